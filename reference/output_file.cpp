@@ -56,6 +56,14 @@ std::string find_writing_fault(const std::filesystem::path& file) {
   return ::access(folder.c_str(), W_OK | X_OK) == 0 ? "" : words_for(errno);
 }
 
+bool is_one_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code error;  // there is none of that name
+  if (std::filesystem::exists(a, error))
+    return std::filesystem::is_regular_file(a, error) && std::filesystem::equivalent(a, b, error);
+  const std::filesystem::path place = std::filesystem::weakly_canonical(a, error);
+  return !place.empty() && place == std::filesystem::weakly_canonical(b, error);
+}
+
 OutputFile::OutputFile(const std::filesystem::path& file, std::string expected)
     : file_(file), expected_(std::move(expected)) {
   std::error_code error;  // what it is shows when the file is opened

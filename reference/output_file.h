@@ -22,6 +22,10 @@ std::string find_reading_fault(const std::filesystem::path& file);
 /// nothing is. The folders on the way may be missing.
 std::string find_writing_fault(const std::filesystem::path& file);
 
+/// Whether what is written to one is found in the other: names of one file, or of one that is yet to be made.
+/// Not what is no file, such as /dev/null or a pipe, which takes what comes.
+bool is_one_file(const std::filesystem::path& a, const std::filesystem::path& b);
+
 /// Records (lines, mostly) in a file that is begun anew. Where the place is full, the records that are there
 /// whole stay, the one that was cut is taken back, and the write or close() that met it throws InputError
 /// with the system's reason. The folder of the file is made where it is missing.

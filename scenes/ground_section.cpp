@@ -17,7 +17,8 @@ GroundMesh load_ground_mesh(const YamlCursor& place, const ShapeOptions& search)
   const double size_m = size ? size->number(kLength) : 0.0;
   const Vec3 position_m = position ? position->vector() : Vec3::Zero();
   try {
-    GroundMesh ground{.mesh = load_mesh(find_mesh_file(name, search), {.untrusted = search.untrusted})};
+    const std::filesystem::path file = find_mesh_file(name, search);
+    GroundMesh ground{.mesh = load_mesh(file, {.untrusted = search.untrusted}), .file = file};
     if (size) ground.mesh = scale_to_size(std::move(ground.mesh), size_m);
     for (Vec3& vertex : ground.mesh.vertices) vertex += position_m;
     check_ground_mesh(ground.mesh);

@@ -6,17 +6,28 @@
 
 namespace lodestone {
 
+RunPlaces places_of(const Scene& scene, const RunSettings& settings) {
+  RunPlaces places;
+  places.recording = settings.record;
+  if (settings.out.empty()) return places;
+  places.playback = settings.out / "run.play";
+  places.steps = settings.out / "steps.csv";
+  if (settings.fork_step) places.fork_playback = settings.out / "fork.play";
+  if (!scene.output.trajectory.empty()) places.trajectory = settings.out / scene.output.trajectory;
+  return places;
+}
+
 RunFiles::RunFiles(const Scene& scene, const RunSettings& settings)
     : scene_(scene), trajectory_(int(scene.bodies.size())) {
   if (settings.out.empty()) return;
   std::error_code error;
   std::filesystem::create_directories(settings.out, error);
   if (error) throw_file_error(settings.out, error.value(), "a folder for results");
-  playback_ = settings.out / (settings.fork_step ? "fork.play" : "run.play");
+  const RunPlaces places = places_of(scene, settings);
+  playback_ = settings.fork_step ? places.fork_playback : places.playback;
   if (settings.fork_step) return;
-  csv_file_ = settings.out / "steps.csv";
+  csv_file_ = places.steps, trajectory_file_ = places.trajectory;
   csv_.emplace(csv_file_);
-  if (!scene.output.trajectory.empty()) trajectory_file_ = settings.out / scene.output.trajectory;
 }
 
 void RunFiles::begin_anew(int from_step) {

@@ -16,6 +16,12 @@
 
 namespace lodestone {
 
+/// What a run writes, and where; an empty one it does not.
+struct RunPlaces {
+  std::filesystem::path playback, fork_playback, trajectory, steps, recording;
+};
+RunPlaces places_of(const Scene& scene, const RunSettings& settings);
+
 /// A place that is full ends the run, not the program: what there is so far is kept, and fault() says why.
 class RunFiles {
  public:

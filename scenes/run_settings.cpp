@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "reference/argument_error.h"
+#include "reference/output_file.h"
+#include "scenes/run_files.h"
 #include "scenes/scene_sections.h"
 #include "scenes/trajectory.h"
 
@@ -51,6 +53,24 @@ void check_trajectory(const Scene& scene, int steps) {
         scene.file.string(), every, frames, scene.bodies.size(), steps / std::max(1, most - 1) + 1));
 }
 
+// Each file that it writes must leave what it reads, and the others, as they are.
+void check_places(const Scene& scene, const RunSettings& settings) {
+  const RunPlaces places = places_of(scene, settings);
+  std::vector<std::filesystem::path> taken = scene.mesh_files;
+  taken.push_back(scene.file);
+  const std::size_t read = taken.size();
+  for (const std::filesystem::path& file :
+       {places.playback, places.fork_playback, places.trajectory, places.steps, places.recording}) {
+    if (file.empty()) continue;
+    for (std::size_t i = 0; i < taken.size(); ++i)
+      if (is_one_file(file, taken[i]))
+        throw_input_error(file.string(),
+                          i < read ? "a file that the scene is made of" : "a file that the run writes, too",
+                          "one of its own for what the run writes");
+    taken.push_back(file);
+  }
+}
+
 }  // namespace
 
 std::string text_of(const RunProgress& p) {
@@ -69,6 +89,7 @@ void check_settings(const Scene& scene, int steps, double dt_s, const RunSetting
         scene.file.string()));
   if (settings.fork_step) check_fork(scene, steps, settings);
   if (!settings.out.empty()) check_trajectory(scene, steps);
+  check_places(scene, settings);
 }
 
 std::string text_of_choice(const RunSettings& settings) {

@@ -35,6 +35,7 @@ struct GroundBox {
 struct GroundMesh {
   Mesh mesh;
   MaterialId material = 0;
+  std::filesystem::path file = {};  ///< that it is of; empty: terrain
 };
 using SceneGround = std::variant<GroundPlane, GroundBox, GroundMesh>;
 
@@ -86,6 +87,7 @@ struct Scene {
   MaterialTable materials;
   std::vector<std::string> material_names;
   std::map<std::string, std::shared_ptr<const Shape>> shapes;
+  std::vector<std::filesystem::path> mesh_files;  ///< of shapes and ground
   std::vector<SceneGround> ground;
   std::vector<SceneBody> bodies;  ///< those of ragdolls first, then the others, scatters expanded
   std::vector<SceneJoint> joints;

@@ -220,6 +220,16 @@ ShapeOptions search_of(const fs::path& file, const SceneLoadSettings& settings) 
   return options;
 }
 
+std::vector<fs::path> mesh_files_of(const Scene& scene, const std::map<std::string, SceneShape>& shapes) {
+  std::vector<fs::path> files;
+  for (const auto& [name, shape] : shapes)
+    if (!shape.file.empty()) files.push_back(shape.file);
+  for (const SceneGround& ground : scene.ground)
+    if (const auto* mesh = std::get_if<GroundMesh>(&ground); mesh && !mesh->file.empty())
+      files.push_back(mesh->file);
+  return files;
+}
+
 }  // namespace
 
 Scene load_scene(const fs::path& file, const SceneLoadSettings& settings) {
@@ -243,6 +253,7 @@ Scene load_scene(const fs::path& file, const SceneLoadSettings& settings) {
   scene.checks = load_checks(root, scene.ground);
   const std::map<std::string, SceneShape> shapes = load_shapes(root, scene, search);
   for (const auto& [shape_name, shape] : shapes) scene.shapes.emplace(shape_name, shape.shape);
+  scene.mesh_files = mesh_files_of(scene, shapes);
   load_ragdolls(root, scene);
   add_bodies(root, scene, shapes, settings);
   load_joints(root, scene);

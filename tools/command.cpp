@@ -36,25 +36,32 @@ std::filesystem::path place_of(const CLI::Option& option) {
   return option.count() > 0 ? option.results().front() : option.get_default_str();
 }
 
+/// Where what `option` names may be read: a mesh in the folders of --mesh-path, too.
+std::vector<std::filesystem::path> places_read(const CLI::App& command, const CLI::Option& option) {
+  const CLI::Option* folders = command.get_option_no_throw("--mesh-path");
+  std::vector<std::filesystem::path> places;
+  for (const std::string& name : option.results()) {
+    places.push_back(name);
+    if (!folders) continue;
+    for (const std::filesystem::path folder : folders->results()) places.push_back(folder / name);
+  }
+  return places;
+}
+
 /// That `file`, which `option` writes, is no other's.
-void check_own(const std::filesystem::path& file, CLI::Option& option, CLI::Option& other) {
+void check_own(const CLI::App& command, const std::filesystem::path& file, CLI::Option& option,
+               CLI::Option& other) {
   const auto refuse = [&](const char* does) {
     throw_input_error(file.string(), fmt::format("the file that {} {}", other.get_name(), does),
                       fmt::format("another one for {}", option.get_name()));
   };
-  std::error_code error;  // there is none of that name
   if (has_mark(other, kWritten)) {
     const std::filesystem::path there = place_of(other);
-    const bool is_same = !there.empty() && std::filesystem::weakly_canonical(file, error) ==
-                                               std::filesystem::weakly_canonical(there, error);
-    // What is no file, such as /dev/null or a pipe, takes both.
-    const bool is_file =
-        !std::filesystem::exists(file, error) || std::filesystem::is_regular_file(file, error);
-    if (is_same && is_file) refuse("writes");
+    if (!there.empty() && is_one_file(file, there)) refuse("writes");
     return;
   }
-  for (const std::string& text : other.results())
-    if (std::filesystem::equivalent(text, file, error)) refuse("reads");
+  for (const std::filesystem::path& place : places_read(command, other))
+    if (is_one_file(file, place)) refuse("reads");
 }
 
 void check_written(CLI::App& command) {
@@ -69,7 +76,7 @@ void check_written(CLI::App& command) {
       throw_input_error(place.string(), fault,
                         is_folder ? "a folder for results" : "a file that can be written");
     for (CLI::Option* other : options)
-      if (!is_folder && other != option) check_own(place, *option, *other);
+      if (!is_folder && other != option) check_own(command, place, *option, *other);
   }
 }
 

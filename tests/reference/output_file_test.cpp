@@ -22,6 +22,19 @@ class OutputFileTest : public ::testing::Test {
   const fs::path& folder_ = own_.path();
 };
 
+TEST_F(OutputFileTest, NamesOfOneFileAreOneFile) {
+  own_.write("a", "");
+  own_.write("b", "");
+  fs::create_symlink(folder_ / "a", folder_ / "link");
+  EXPECT_TRUE(is_one_file(folder_ / "a", folder_ / "./a"));
+  EXPECT_TRUE(is_one_file(folder_ / "link", folder_ / "a"));
+  EXPECT_FALSE(is_one_file(folder_ / "a", folder_ / "b"));
+  EXPECT_TRUE(is_one_file(folder_ / "new", folder_ / "x/../new"));
+  EXPECT_FALSE(is_one_file(folder_ / "new", folder_ / "a"));
+  EXPECT_FALSE(is_one_file("/dev/null", "/dev/null"));
+  EXPECT_FALSE(is_one_file("", ""));
+}
+
 TEST_F(OutputFileTest, WritesWhatItIsGiven) {
   const fs::path file = folder_ / "inner" / "a.csv";  // whose folder is made
   const std::string large(200'000, 'x');

@@ -169,6 +169,35 @@ TEST_F(Runner, RefusesATrajectoryBeyondFourGigabytes) {
   EXPECT_NE(message.find("every_n_steps: found 2"), std::string::npos) << message;
 }
 
+TEST_F(Runner, WritesOverNothingThatItReadsOrWrites) {
+  std::filesystem::create_directories(folder() / "meshes");
+  std::ofstream(folder() / "meshes/a.obj") << tetrahedron_obj();
+  std::ofstream(folder() / "meshes/run.glb") << tetrahedron_obj();
+  Scene scene = load(R"(version: 1
+shapes: {a: {mesh: meshes/a.obj, size_m: 1}}
+ground: [{mesh: meshes/a.obj}]
+bodies: [{shape: a, position_m: [0, 0, 3], level: full}]
+output: {trajectory: run.glb}
+)");
+  EXPECT_EQ(scene.mesh_files.size(), 2u);
+  scene.mesh_files.push_back(folder() / "meshes/run.glb");
+  const std::string read = "found a file that the scene is made of",
+                    written = "found a file that the run writes, too";
+  const auto expect_refused = [&](const RunSettings& settings, const std::string& words) {
+    const std::string message = testing::message_of([&] { run_scene(scene, settings); });
+    EXPECT_NE(message.find(words), std::string::npos) << message;
+  };
+  expect_refused({.steps = 1, .record = folder() / "meshes/../meshes/a.obj"}, read);
+  expect_refused({.steps = 1, .record = scene.file}, read);
+  expect_refused({.steps = 1, .out = folder() / "meshes"}, read);
+  for (const char* file : {"out/run.play", "out/steps.csv", "out/run.glb"})
+    expect_refused({.steps = 1, .out = folder() / "out", .record = folder() / file}, written);
+  EXPECT_FALSE(std::filesystem::exists(folder() / "out"));
+  EXPECT_EQ(testing::bytes_of(folder() / "meshes/a.obj"), tetrahedron_obj());
+  EXPECT_EQ(testing::bytes_of(folder() / "meshes/run.glb"), tetrahedron_obj());
+  EXPECT_EQ(run_scene(scene, {.steps = 1, .out = folder() / "out", .record = "/dev/null"}).steps, 1);
+}
+
 // The viewpoint goes from one ball to the other: the first is full and then statistical, the second the other
 // way round.
 TEST_F(Runner, ViewpointsMoveAndDecideLevels) {

@@ -107,6 +107,18 @@ TEST_F(Losses, TwoResultsInOneFileAreRefused) {
   EXPECT_EQ(run(small + "-o /dev/null --export-trials /dev/null").exit_code, 0);
 }
 
+TEST_F(Losses, AMeshInAFolderOfMeshesIsNotWrittenOver) {
+  const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+  std::filesystem::create_directories(at("meshes"));
+  std::ofstream(at("meshes/a.obj")) << mesh;
+  const Ended ended = run("sign a.obj --mesh-path /dev:" + name("meshes") + " -o " + name("meshes/a.obj"));
+  EXPECT_EQ(ended.exit_code, 3) << ended.out;
+  EXPECT_NE(ended.out.find("a.obj: found the file that SHAPE reads, expected another one for -o"),
+            std::string::npos)
+      << ended.out;
+  EXPECT_EQ(testing::bytes_of(at("meshes/a.obj")), mesh);
+}
+
 TEST_F(Losses, APageIsNotPutInPlaceOfAFutureThatItPlays) {
   for (const char* file : {"run.play", "fork.play"}) {
     std::filesystem::create_directories(at("run"));
