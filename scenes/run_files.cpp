@@ -12,7 +12,7 @@ RunPlaces places_of(const Scene& scene, const RunSettings& settings) {
   if (settings.out.empty()) return places;
   places.playback = settings.out / "run.play";
   places.steps = settings.out / "steps.csv";
-  if (settings.fork_step) places.fork_playback = settings.out / "fork.play";
+  places.fork_playback = settings.out / "fork.play";
   if (!scene.output.trajectory.empty()) places.trajectory = settings.out / scene.output.trajectory;
   return places;
 }
@@ -26,6 +26,8 @@ RunFiles::RunFiles(const Scene& scene, const RunSettings& settings)
   const RunPlaces places = places_of(scene, settings);
   playback_ = settings.fork_step ? places.fork_playback : places.playback;
   if (settings.fork_step) return;
+  if (std::filesystem::is_regular_file(std::filesystem::symlink_status(places.fork_playback, error)))
+    std::filesystem::remove(places.fork_playback, error);  // an earlier run's: `view` would play it with this
   csv_file_ = places.steps, trajectory_file_ = places.trajectory;
   csv_.emplace(csv_file_);
 }

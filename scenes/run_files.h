@@ -16,7 +16,8 @@
 
 namespace lodestone {
 
-/// What a run writes, and where; an empty one it does not.
+/// What a run writes, and where; an empty one it does not. A second future's is there where there is none,
+/// too.
 struct RunPlaces {
   std::filesystem::path playback, fork_playback, trajectory, steps, recording;
 };

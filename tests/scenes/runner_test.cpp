@@ -169,6 +169,19 @@ TEST_F(Runner, RefusesATrajectoryBeyondFourGigabytes) {
   EXPECT_NE(message.find("every_n_steps: found 2"), std::string::npos) << message;
 }
 
+TEST_F(Runner, AnEarlierRunsSecondFutureIsNotThisOnes) {
+  const std::filesystem::path fork = folder() / "out/fork.play";
+  Scene scene = load(kFalling);
+  for (SceneBody& body : scene.bodies) body.definition.level = LevelChoice::automatic;
+  const auto none = [](const Shape&, const ContactLaw&) { return std::shared_ptr<const Signature>(); };
+  run_scene(
+      scene,
+      {.steps = 6, .level = LevelChoice::full, .fork_step = 3, .out = folder() / "out", .signatures = none});
+  EXPECT_TRUE(std::filesystem::exists(fork));
+  run_scene(scene, {.steps = 6, .out = folder() / "out", .signatures = none});
+  EXPECT_FALSE(std::filesystem::exists(fork));
+}
+
 TEST_F(Runner, WritesOverNothingThatItReadsOrWrites) {
   std::filesystem::create_directories(folder() / "meshes");
   std::ofstream(folder() / "meshes/a.obj") << tetrahedron_obj();
