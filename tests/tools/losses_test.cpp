@@ -70,6 +70,17 @@ TEST_F(Losses, EveryFileOfASignatureIsChecked) {
   expect_no_room("inspect " + name("b.sig") + " --svg " + full("a.svg"), "a.svg");
 }
 
+// Past the cache, too.
+TEST_F(Losses, ASignatureSaysHowLongItTook) {
+  const std::string csv = name("a.csv");
+  for (const std::string& arguments : {"--export-trials " + csv, "--from-trials " + csv}) {
+    const Ended ended = testing::run_shell(command(kSign + "--json " + arguments + " 2>/dev/null"));
+    ASSERT_EQ(ended.exit_code, 0) << ended.out;
+    const auto json = nlohmann::json::parse(ended.out);
+    EXPECT_TRUE(json["seconds"].is_number() && json["trials_per_s"].is_number()) << arguments << ended.out;
+  }
+}
+
 TEST_F(Losses, EveryFileOfAComparisonIsChecked) {
   const std::string compare = "compare drop box:0.2,0.3,0.4 --trials 2 --methods full_1 ";
   expect_no_room(compare + "--csv " + full("a.csv"), "a.csv");

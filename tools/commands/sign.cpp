@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stop_token>
+#include <utility>
 
 #include "signature/measure/measurement_part.h"
 #include "signature/measure/signature_from_trials.h"
@@ -56,27 +58,41 @@ SignatureSourceSettings source_settings(const SignArguments& arguments, Progress
   return source;
 }
 
+// What `measure` makes, past the cache, with how long it took.
+template <class Measure>
+SourcedSignature sign_now(Measure measure) {
+  const auto start = std::chrono::steady_clock::now();
+  Signature signature = measure();
+  signature.measuring_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return {.signature = std::make_shared<const Signature>(std::move(signature)), .file = {}};
+}
+
 SourcedSignature sign_from_trials(const SignArguments& arguments, const Shape& shape) {
   const MeasuredTrials trials = load_trials(arguments.from_trials);
   TrialCoverage coverage;
   ProgressLine line;
-  Signature signature =
-      make_signature_from_trials(shape, settings_of(arguments), trials,
-                                 {.threads = arguments.threads, .progress = line.function()}, &coverage);
+  const SourcedSignature sourced = sign_now([&] {
+    return make_signature_from_trials(shape, settings_of(arguments), trials,
+                                      {.threads = arguments.threads, .progress = line.function()}, &coverage);
+  });
   write_stderr(fmt::format("{} collisions fill {} of {} cells; {} left out; {} rests. The rest is ODE's.\n",
                            coverage.collisions, coverage.measured_cells, coverage.cells, coverage.left_out,
                            coverage.rests));
-  return {.signature = std::make_shared<const Signature>(std::move(signature)), .file = {}};
+  return sourced;
 }
 
 SourcedSignature sign_and_export(const SignArguments& arguments, const Shape& shape) {
   ProgressLine line;
   const SignatureSettings settings = settings_of(arguments);
-  const Measurement measurement =
-      measure_units(shape, settings, {}, {.threads = arguments.threads, .progress = line.function()});
+  Measurement measurement;
+  const SourcedSignature sourced = sign_now([&] {
+    measurement =
+        measure_units(shape, settings, {}, {.threads = arguments.threads, .progress = line.function()});
+    return make_signature(shape, settings, measurement);
+  });
   save_trials(list_trials(shape, settings, measurement, arguments.threads), arguments.export_trials);
-  return {.signature = std::make_shared<const Signature>(make_signature(shape, settings, measurement)),
-          .file = {}};
+  return sourced;
 }
 
 SourcedSignature find_signature(const SignArguments& arguments, const Shape& shape) {
