@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 
 #include "scenes/ground_heights.h"
 #include "scenes/scatter.h"
@@ -32,6 +33,27 @@ LevelChoice load_level(const YamlCursor& key) { return LevelChoice(key.choice(kL
 Rung load_rung(const YamlCursor& key) {
   static const std::array<std::string, 3> kNames{"tables", "support", "full"};
   return Rung(key.choice(kNames));
+}
+
+struct RungRange {
+  Rung least, greatest;
+};
+
+/// That a body of that level may be on.
+RungRange rungs_of(LevelChoice level) {
+  switch (level) {
+    case LevelChoice::full:
+      return {Rung::full, Rung::full};
+    case LevelChoice::support:
+      return {Rung::support, Rung::support};
+    case LevelChoice::tables:
+      return {Rung::tables, Rung::tables};
+    case LevelChoice::statistical:
+      return {Rung::tables, Rung::support};
+    case LevelChoice::automatic:
+      break;
+  }
+  return {Rung::tables, Rung::full};
 }
 
 ScatterRegion load_region(const YamlCursor& scatter) {
@@ -80,6 +102,21 @@ void load_motion(const YamlCursor& place, BodyEntry& entry) {
   if (auto key = place.find("angular_velocity_rad_per_s")) state.angular_velocity = key->vector(kSpeed);
 }
 
+/// A level that names a rung goes before the range, and what sleeps lies still: neither is left to do
+/// nothing.
+void check_agrees(const YamlCursor& place, const SceneBody& body) {
+  const BodyDefinition& definition = body.definition;
+  const RungRange asked = rungs_of(definition.level);
+  if (asked.greatest < definition.least_rung || asked.least > definition.greatest_rung)
+    place.at("level").fail(fmt::format("{}, out of {} … {}", name_of(definition.level),
+                                       name_of(definition.least_rung), name_of(definition.greatest_rung)),
+                           "one from least_rung to greatest_rung");
+  if (!body.asleep) return;
+  for (const auto& [key, velocity] : {std::pair("velocity_m_per_s", definition.state.velocity),
+                                      {"angular_velocity_rad_per_s", definition.state.angular_velocity}})
+    if (!velocity.isZero(0.0)) place.at(key).fail("a body that moves and is asleep", "one of the two");
+}
+
 BodyEntry load_entry(const YamlCursor& place, int index, const Scene& scene,
                      const std::map<std::string, SceneShape>& shapes, const SceneLoadSettings& settings) {
   place.expect_keys({"shape", "position_m", "orientation", "velocity_m_per_s", "angular_velocity_rad_per_s",
@@ -105,6 +142,7 @@ BodyEntry load_entry(const YamlCursor& place, int index, const Scene& scene,
   }
   if (auto key = place.find("name")) entry.body.name = key->text();
   if (auto key = place.find("asleep")) entry.body.asleep = key->truth();
+  check_agrees(place, entry.body);
   if (auto scatter = place.find("scatter")) {
     entry.scatter = load_scatter(*scatter, scene.step.seed + std::uint64_t(index), settings);
     if (auto key = scatter->find("on_ground")) entry.on_ground = key->truth();

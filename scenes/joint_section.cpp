@@ -38,6 +38,9 @@ void make_full(const YamlCursor& key, SceneBody& body) {
   if (level != LevelChoice::automatic && level != LevelChoice::full)
     key.fail(fmt::format("{}, whose level is {}", body.name, name_of(level)),
              "a body that may be full, as joints need it");
+  if (const Rung greatest = body.definition.greatest_rung; greatest != Rung::full)
+    key.fail(fmt::format("{}, whose greatest_rung is {}", body.name, name_of(greatest)),
+             "a body that may be full, as joints need it");
   level = LevelChoice::full;
 }
 

@@ -19,7 +19,7 @@ TEST_F(BodySection, MotionAndNameArrive) {
   const SceneBody body =
       made(
           "{shape: crate, position_m: [1, 2, 3], orientation: [0, 0, 0, 5], velocity_m_per_s: [4, 5, 6], "
-          "angular_velocity_rad_per_s: [7, 8, 9], name: hero, importance: 2, asleep: true}")
+          "angular_velocity_rad_per_s: [7, 8, 9], name: hero, importance: 2}")
           .at(0);
   EXPECT_EQ(body.definition.state.position, Vec3(1, 2, 3));
   EXPECT_EQ(body.definition.state.orientation.z(), 1.0);
@@ -27,7 +27,7 @@ TEST_F(BodySection, MotionAndNameArrive) {
   EXPECT_EQ(body.definition.state.angular_velocity, Vec3(7, 8, 9));
   EXPECT_EQ(body.name, "hero");
   EXPECT_EQ(body.definition.importance, 2.0);
-  EXPECT_TRUE(body.asleep);
+  EXPECT_FALSE(body.asleep);
 }
 
 // The body's own mass goes before its shape's, which goes before the material's.
@@ -51,6 +51,24 @@ TEST_F(BodySection, RungsAreARange) {
             std::string::npos);
   EXPECT_NE(fault("{shape: ball, position_m: [0, 0, 5], level: ful}").find("did you mean \"full\"?"),
             std::string::npos);
+}
+
+TEST_F(BodySection, WhatWouldDoNothingIsRefused) {
+  const std::string ball = "{shape: ball, position_m: [0, 0, 5], ";
+  for (const char* level : {"level: full, greatest_rung: support", "level: support, greatest_rung: tables",
+                            "level: tables, least_rung: support", "level: statistical, least_rung: full"})
+    EXPECT_NE(fault(ball + level + "}").find("expected one from least_rung to greatest_rung"),
+              std::string::npos)
+        << level;
+  for (const char* level : {"level: full, least_rung: support", "level: tables, greatest_rung: support",
+                            "level: statistical, least_rung: support", "level: auto, least_rung: full"})
+    EXPECT_EQ(made(ball + level + "}").size(), 1u) << level;
+  EXPECT_TRUE(made(ball + "asleep: true, velocity_m_per_s: [0, 0, 0]}").at(0).asleep);
+  for (const char* key : {"velocity_m_per_s", "angular_velocity_rad_per_s"}) {
+    const std::string message = fault(ball + "asleep: true, " + key + ": [0, 0, 1]}");
+    EXPECT_NE(message.find(std::string(key) + ": found a body that moves and is asleep"), std::string::npos)
+        << message;
+  }
 }
 
 // A scatter is as many bodies as it says, within its region, apart, of its seed alone, numbered.

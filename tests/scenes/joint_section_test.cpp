@@ -12,6 +12,7 @@ class JointSection : public SceneFixture {
         "bodies:\n  - {shape: crate, position_m: [0, 0, 5], name: door}\n"
         "  - {shape: ball, position_m: [3, 0, 5], name: frame, level: full}\n"
         "  - {shape: ball, position_m: [6, 0, 5], name: far, level: statistical}\n"
+        "  - {shape: ball, position_m: [-3, 0, 5], name: low, greatest_rung: support}\n"
         "  - {shape: ball, position_m: [9, 0, 5], name: twin}\n  - {shape: ball, position_m: [12, 0, 5], "
         "name: twin}\n"
         "joints: [" +
@@ -39,8 +40,10 @@ TEST_F(JointSection, TheirBodiesAreFull) {
   EXPECT_EQ(scene.bodies[0].definition.level, LevelChoice::full);
   EXPECT_EQ(scene.bodies[1].definition.level, LevelChoice::full);
   EXPECT_EQ(scene.bodies[3].definition.level, LevelChoice::automatic);
-  EXPECT_NE(fault("{ball: [door, far], at_m: [1, 0, 5]}").find("expected a body that may be full"),
-            std::string::npos);
+  for (const char* other : {"far", "low"})
+    EXPECT_NE(fault(std::string("{ball: [door, ") + other + "], at_m: [1, 0, 5]}")
+                  .find("expected a body that may be full"),
+              std::string::npos);
 }
 
 TEST_F(JointSection, WhatCannotBeIsSaid) {

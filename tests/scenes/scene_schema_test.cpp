@@ -119,7 +119,8 @@ bool is_beyond_a_schema(const std::string& message) {
       "ground below the region|at "
       "least full_within_m|at least least_rung|an impossible inertia|"
       "the name of a body|a name of one body|a second time|joints need it|a bar width W|lying beside "
-      "on_ground|a mesh file|mesh that bounds|a list of [0-9]+|no volume|extent|the corners|unused");
+      "on_ground|a mesh file|mesh that bounds|a list of [0-9]+|no volume|extent|the corners|unused|"
+      "from least_rung to greatest_rung|moves and is asleep");
   // Names of shapes and materials; times of a path in order.
   static const std::regex kReferences("^[^:]*:[0-9]+: [^:]*(shape|material|between\\[[01]\\]|time_s): ");
   return std::regex_search(message, kPhrases) || std::regex_search(message, kReferences);
