@@ -19,7 +19,7 @@ using Memory = std::map<SignatureKey, std::shared_ptr<const Signature>>;
 
 bool stays_full(const BodyDefinition& body, const RunSettings& settings) {
   const LevelChoice level = settings.level == LevelChoice::automatic ? body.level : settings.level;
-  return level == LevelChoice::full;
+  return level == LevelChoice::full || (level == LevelChoice::automatic && body.least_rung == Rung::full);
 }
 
 // Of what a signature is measured on: the first plane, as the manager has it.

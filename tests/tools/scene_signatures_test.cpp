@@ -22,6 +22,7 @@ bodies:
   - {shape: crate, position_m: [0, 0, 6], material: ice}
   - {shape: ball, position_m: [0, 0, 8], level: tables}
   - {shape: slab, position_m: [0, 0, 12], level: full}
+  - {shape: slab, position_m: [0, 0, 14], least_rung: full}
 )";
 
 // What was asked for: friction of each question, by shape.
