@@ -38,10 +38,11 @@ SignatureSettings SignatureArguments::measuring() const {
 void add_signature_arguments(Command& command, SignatureArguments& arguments) {
   SignatureSettings& settings = arguments.settings;
   const std::string group = "Signature";
-  command
-      .add_flag("--paper-grid", settings.paper_grid,
-                "responses over the paper's grid: theta 7, phi 10, speed 26, spin 16, 30 trials each")
-      .in_group(group);
+  const Option paper_grid =
+      command
+          .add_flag("--paper-grid", settings.paper_grid,
+                    "responses over the paper's grid: theta 7, phi 10, speed 26, spin 16, 30 trials each")
+          .in_group(group);
   command
       .add_choice<TrialEnd>(
           "--trial-end", arguments.trial_end,
@@ -53,6 +54,7 @@ void add_signature_arguments(Command& command, SignatureArguments& arguments) {
       .add_option("--psi", settings.n_psi,
                   "cells of the azimuth of the spin about the velocity; 1: all in one, as the paper's are")
       .within(1, 64)
+      .excludes(paper_grid)
       .in_group(group);
   command
       .add_choice<ResponseDraw>("--draw", settings.draw,
@@ -70,6 +72,7 @@ void add_signature_arguments(Command& command, SignatureArguments& arguments) {
       .in_group(group);
   command.add_option("--cell-trials", settings.trials_per_cell, "collisions in each cell of the tables")
       .within(2, 100'000)
+      .excludes(paper_grid)
       .in_group(group);
   command
       .add_option("--height-trials", settings.height_trials,

@@ -49,6 +49,15 @@ TEST(SignatureArguments, WhatIsOutOfRangeIsRefusedByName) {
     EXPECT_NE(signature_refused(line), "no error") << line;
 }
 
+// Which has one psi, and a number of trials of its own.
+TEST(SignatureArguments, WhatThePapersGridHasNoUseForIsRefusedBesideIt) {
+  for (const char* option : {"--psi 8", "--cell-trials 7"}) {
+    const std::string line = std::string("--paper-grid ") + option;
+    EXPECT_NE(signature_refused(line).find("--paper-grid"), std::string::npos) << signature_refused(line);
+  }
+  EXPECT_TRUE(measuring("--paper-grid --height-trials 9 --draw correlated").paper_grid);
+}
+
 struct Shared {
   std::optional<Share> share;
 };

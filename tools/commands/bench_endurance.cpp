@@ -64,10 +64,11 @@ void add_bench_endurance_command(Command& bench) {
   EnduranceSettings& settings = arguments.bench;
   command.add_option("--steps", settings.steps, "of 1/60 s")
       .within(std::int64_t(2 * kEnduranceRound), std::int64_t(10'000'000'000));
-  command.add_option("--scene", arguments.scene, "a YAML file, instead of crates: a viewpoint circles it");
-  command.add_option("--bodies", settings.bodies, "crates").within(1, 1000);
+  const Option scene = command.add_option("--scene", arguments.scene,
+                                          "a YAML file, instead of crates: a viewpoint circles it");
+  command.add_option("--bodies", settings.bodies, "crates").within(1, 1000).excludes(scene);
   command.add_option("--threads", settings.threads, "of the statistical level").within(1, 4096);
-  command.add_option("--seed", settings.seed, "of the crates' starts");
+  command.add_option("--seed", settings.seed, "of the crates' starts").excludes(scene);
   add_json_argument(command, arguments.results);
   command.add_footer("Exit code 1 where a figure is beyond its bound.");
 }
