@@ -1,5 +1,7 @@
 // One measurement divided among processes.
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
 
 #include "tests/tools/cli_fixture.h"
 
@@ -76,6 +78,23 @@ TEST_F(Shard, APartSaysWhatItMeasured) {
     trials += json["trials"].get<std::uint64_t>();
   }
   EXPECT_EQ(nlohmann::json::parse(run(kBox + "--no-cache --json").out)["trials"], trials);
+}
+
+// Scores by two signatures are no series.
+TEST_F(Shard, PartsOfAComparisonByOtherSignaturesAreRefused) {
+  const std::string compare =
+      "compare conditions box:0.2,0.3,0.4 --trials 2 --methods full_1 --only slope_deg=20 --json --threads "
+      "1 ";
+  for (const auto& [part, options] :
+       {std::pair("1", "--shard 1/2"), {"2", "--shard 2/2"}, {"other", "--shard 2/2 --clips 7"}}) {
+    const Ended ended =
+        testing::run_shell(command(compare + options + " >" + name(std::string(part) + ".json")));
+    ASSERT_EQ(ended.exit_code, 0) << ended.out;
+  }
+  EXPECT_EQ(run("merge " + name("1.json") + " " + name("2.json") + " -o " + name("all.json")).exit_code, 0);
+  const Ended ended = run("merge " + name("1.json") + " " + name("other.json") + " -o " + name("all.json"));
+  EXPECT_EQ(ended.exit_code, 3);
+  EXPECT_NE(ended.out.find("other.json: found part 2/2 of "), std::string::npos) << ended.out;
 }
 
 TEST_F(Shard, PartsThatDoNotBelongTogetherAreNamed) {

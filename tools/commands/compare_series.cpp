@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -60,6 +61,20 @@ std::vector<DropComparison> compare(const std::vector<DropCase>& cases, const Se
   return with_progress(settings, [&](const auto& with_line) { return compare_series(cases, with_line); });
 }
 
+// Of the signatures that the statistical level goes by.
+nlohmann::ordered_json json_of(const SignatureSettings& measuring) {
+  constexpr std::array kDraws = {"independent", "correlated", "empirical"};
+  return {{"paper_grid", measuring.paper_grid},
+          {"trial_end", measuring.trial_end == TrialEnd::first_impulse ? "first-impulse" : "leaves-plane"},
+          {"psi", measuring.n_psi},
+          {"draw", kDraws.at(std::size_t(measuring.draw))},
+          {"table_error", measuring.table_error},
+          {"cell_trials", measuring.trials_per_cell},
+          {"height_trials", measuring.height_trials},
+          {"settling_trials", measuring.settling_trials},
+          {"clips", measuring.clips}};
+}
+
 // A part says what series it is of, though it may have no row of it: merge takes parts of one alone. `of`:
 // what all rows share.
 nlohmann::ordered_json with_share(nlohmann::ordered_json json, const SeriesArguments& arguments,
@@ -73,6 +88,7 @@ nlohmann::ordered_json with_share(nlohmann::ordered_json json, const SeriesArgum
   if (settings.truth.push_m_per_s) series["truth_push_m_per_s"] = *settings.truth.push_m_per_s;
   if (settings.truth.substeps) series["truth_substeps"] = *settings.truth.substeps;
   series["only"] = arguments.only;
+  series["signature"] = json_of(settings.measuring);
   json["trials"] = settings.trials;
   json["shard"] = fmt::format("{}/{}", arguments.share->index + 1, arguments.share->count);
   return json;
