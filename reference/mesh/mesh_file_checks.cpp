@@ -1,12 +1,13 @@
 #include "reference/mesh/mesh_file_checks.h"
 
 #include <fmt/format.h>
+#include <locale.h>
+#include <stdlib.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -255,12 +256,13 @@ void for_each_obj_line(std::string_view text, const Act& act) {
   }
 }
 
-/// In single precision, as assimp reads it: a comma may stand for the point.
+/// In single precision, as assimp reads it: a comma may stand for the point, whatever the program's locale.
 bool is_finite_number(std::string_view word) {
+  static const locale_t kWithPoint = newlocale(LC_ALL_MASK, "C", nullptr);
   std::string number(word);
   std::ranges::replace(number, ',', '.');
   char* end = nullptr;
-  const float value = std::strtof(number.c_str(), &end);
+  const float value = strtof_l(number.c_str(), &end, kWithPoint);
   return !number.empty() && end == number.c_str() + number.size() && std::isfinite(value);
 }
 

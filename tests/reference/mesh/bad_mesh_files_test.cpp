@@ -4,9 +4,11 @@
 #include <unistd.h>
 
 #include <array>
+#include <clocale>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 
 #include "reference/error.h"
 #include "reference/shape.h"
@@ -191,6 +193,37 @@ TEST_F(BadMeshFile, WrongUnits) {
   EXPECT_EQ(error_of(as_obj(kBox, 1e-5)), "an extent of 3e-05 m, expected 0.0001 … 10000 m (wrong unit?)");
   // In millimetres it passes, for it may be meant.
   EXPECT_NEAR(make(as_obj(kBox, 1e3)).size, 3000.0, 1e-3);
+}
+
+/// While it lives a comma stands for the point in what the C library reads, as in much of Europe.
+class CommaLocale {
+ public:
+  /// Made in `folder`; check is_set() for whether it could be.
+  explicit CommaLocale(const testing::TemporaryFolder& folder) {
+    std::string source = "LC_NUMERIC\ndecimal_point \",\"\nthousands_sep \"\"\ngrouping -1\nEND LC_NUMERIC\n";
+    for (const std::string category : {"LC_CTYPE", "LC_COLLATE", "LC_MONETARY", "LC_TIME", "LC_MESSAGES"})
+      source += category + "\ncopy \"POSIX\"\nEND " + category + "\n";
+    const std::string command = "localedef -c -i '" + folder.write("source", source).string() +
+                                "' -f UTF-8 '" + folder.at("comma").string() + "' >/dev/null 2>&1";
+    if (std::system(command.c_str()) < 0) return;
+    ::setenv("LOCPATH", folder.path().c_str(), 1);
+    std::setlocale(LC_NUMERIC, "comma");
+  }
+  ~CommaLocale() {
+    std::setlocale(LC_NUMERIC, "C");
+    ::unsetenv("LOCPATH");
+  }
+  CommaLocale(const CommaLocale&) = delete;
+  CommaLocale& operator=(const CommaLocale&) = delete;
+  static bool is_set() { return std::string_view(std::localeconv()->decimal_point) == ","; }
+};
+
+TEST_F(BadMeshFile, TheProgramsLocaleDoesNotMatter) {
+  const std::string obj = as_obj(make_box({0.25, 0.5, 1.5}));
+  const CommaLocale comma(folder_);
+  if (!CommaLocale::is_set()) GTEST_SKIP() << "no localedef here";
+  EXPECT_NEAR(make(obj).volume, 0.25 * 0.5 * 1.5, 1e-9);
+  EXPECT_NE(error_in_line("v 0 0 1.5x\n"), testing::kNothingThrown);
 }
 
 // The greatest mesh that is taken is loaded, mended and made a shape of.
