@@ -111,6 +111,7 @@ TEST(Program, WhatIsWrongWithItsArgumentsIsFoundAndExpected) {
       {"bench endurance --scene a.yaml --bodies 9",
        "--scene: found it beside --bodies, expected one of them"},
       {"bench endurance --scene a.yaml --seed 9", "--scene: found it beside --seed, expected one of them"},
+      {"report --json -o r.html", "--out: found it beside --json, expected one of them"},
       {"run a.yaml --dt 0.01,,2", "--dt: found '0.01,,2', expected seconds from 1e-9 to 0.1"},
       {"compare drop box:1,1,1 --dt 0.01,,0.02", "--dt: found '', expected seconds from 1e-9 to 0.1"},
       {"run " LODESTONE_SOURCE_DIR "/scenes/drop.yaml --steps 10 --fork 100 --level full",
