@@ -187,6 +187,17 @@ TEST_F(Losses, ADemoOfNoBodiesIsRefused) {
       << ended.out;
 }
 
+TEST_F(Losses, ADemosFilesAreNotThoseOfItsRun) {
+  const std::string demo = "demo " + kScene + " --level full --steps 5 --trials 2 --out " + name("out");
+  for (const char* option : {" --steps-csv ", " --report "}) {
+    const Ended ended = run(demo + option + name("out/steps.csv"));
+    EXPECT_EQ(ended.exit_code, 3) << ended.out;
+    EXPECT_NE(ended.out.find("steps.csv: found a file that the mixed run writes"), std::string::npos)
+        << ended.out;
+  }
+  EXPECT_FALSE(std::filesystem::exists(at("out")));
+}
+
 // Names are bytes; JSON is UTF-8.
 TEST_F(Losses, AFolderWhoseNameIsNoTextLosesNothing) {
   const Ended ended = run(kRun + "--json --out " + quoted(at("out\xff").string()));

@@ -4,6 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "reference/error.h"
+#include "reference/output_file.h"
+#include "scenes/run_files.h"
 #include "tools/commands.h"
 #include "tools/compare/drop_report.h"
 #include "tools/pages/page.h"
@@ -48,9 +51,19 @@ void save_report(const DemoResult& result, const DemoArguments& arguments, const
                 {.threads = arguments.run.running.threads, .progress = progress, .fresh = fresh})));
 }
 
+void check_apart_from_run(const DemoArguments& arguments, const Scene& scene) {
+  const RunPlaces places = places_of(scene, arguments.run.running);
+  for (const std::filesystem::path& file : {arguments.steps_csv, arguments.report})
+    for (const std::filesystem::path& of_run : {places.playback, places.trajectory, places.steps})
+      if (!file.empty() && is_one_file(file, of_run))
+        throw_input_error(file.string(), "a file that the mixed run writes into the folder of --out",
+                          "another one");
+}
+
 ExitCode run_demo_command(DemoArguments& arguments) {
   if (arguments.report.empty()) arguments.report = arguments.run.running.out / "report.html";
   const Scene scene = load_scene(arguments.run.scene, arguments.run.loading);
+  check_apart_from_run(arguments, scene);
   std::optional<Scene> budget_scene;
   if (!arguments.budget_scene.empty())
     budget_scene = load_scene(arguments.budget_scene, arguments.run.loading);
