@@ -229,10 +229,8 @@ void CallersBodies::gather(const Ground& ground, const Vec3& gravity, std::vecto
     const auto index = std::int32_t(neighbors.size());
     neighbors.push_back(neighbor);
     if (neighbor.asleep || entry.is_tied()) continue;
-    BodyProperties own;
-    own.category = entry.bits.category, own.collide = entry.bits.collide;
     const std::size_t before = contacts.size();
-    reckon_ground_contacts({ground, own}, neighbor, index, contacts);
+    reckon_ground_contacts({ground, entry.bits}, neighbor, index, contacts);
     neighbors.back().on_ground = contacts.size() > before;
   }
 }

@@ -30,7 +30,7 @@ Box in_own_frame(const GeomShape& shape) {
 }
 
 HalfSpace plane_of(const MirroredGeom& geom) {
-  return {.normal = geom.normal, .offset = geom.offset, .bits = {geom.category, geom.collide}};
+  return {.normal = geom.normal, .offset = geom.offset, .bits = {geom.category, geom.collide, true}};
 }
 
 }  // namespace
@@ -91,7 +91,7 @@ void CallersGround::add(const MirroredGeom& geom, std::uint32_t slot, double dt)
     ids_[slot] = ground_.add_plane(plane_of(geom));
   } else {
     GroundShape shape{.bounds = in_own_frame(geom)};
-    shape.bits = {geom.category, geom.collide};
+    shape.bits = {geom.category, geom.collide, true};
     if (geom.kind == GeomKind::height_field || geom.kind == GeomKind::other) {
       shape.probe = [probe = probe_, own = geom.geom](const Vec3& from, const Vec3& direction,
                                                       double length) -> std::optional<GroundHit> {

@@ -10,6 +10,7 @@ namespace lodestone {
 /// ODE's, of what it is: a manager's own ground has all.
 struct GroundBits {
   unsigned category = ~0u, collide = ~0u;
+  bool callers = false;  ///< a geom of the caller's
 };
 
 /// All x with normal·x ≤ offset are solid. `normal` has unit length.

@@ -1,4 +1,5 @@
-// The ground as one body meets it: of a caller's geoms only those that their bits and its own let meet.
+// The ground as one body meets it: of a caller's geoms only those that their bits and its own let meet; a
+// body of the caller's meets nothing but his geoms.
 #pragma once
 
 #include <algorithm>
@@ -16,9 +17,12 @@ class MetGround {
   MetGround(const Ground& ground) : ground_(ground) {}  // NOLINT: to most bodies it is the same
   MetGround(const Ground& ground, const BodyProperties& own)
       : ground_(ground), category_(own.category), collide_(own.collide) {}
+  /// As a body of the caller's whose geoms have these bits.
+  MetGround(const Ground& ground, const GroundBits& callers)
+      : ground_(ground), category_(callers.category), collide_(callers.collide), callers_alone_(true) {}
 
   bool meets(const GroundBits& bits) const {
-    return may_meet(category_, collide_, bits.category, bits.collide);
+    return may_meet(category_, collide_, bits.category, bits.collide) && (bits.callers || !callers_alone_);
   }
   /// As Ground::find_parts.
   void find_parts(const Vec3& center, double reach, std::vector<const GroundPart*>& found) const {
@@ -40,10 +44,11 @@ class MetGround {
   std::span<const HalfSpace> planes() const { return of(ground_.planes()); }
 
  private:
-  bool meets_all() const { return (category_ & collide_) == ~0u; }
+  bool meets_all() const { return (category_ & collide_) == ~0u && !callers_alone_; }
 
   const Ground& ground_;
   unsigned category_ = ~0u, collide_ = ~0u;
+  bool callers_alone_ = false;
 };
 
 }  // namespace lodestone

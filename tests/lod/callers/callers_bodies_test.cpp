@@ -100,7 +100,8 @@ TEST_F(BodiesOfCaller, WhatTheyAreGivenArrives) {
 }
 
 TEST_F(BodiesOfCaller, WhatHoldsThemUpIsAmongTheContacts) {
-  ground_.add_plane({});
+  ground_.add_plane({.bits = {.callers = true}});
+  ground_.add_plane({.offset = 0.1});  // the manager's, which the caller's bodies do not meet
   const dBodyID stands = scene_.body(2.0, {0, 0, 0.2});
   scene_.body(2.0, {5, 0, 3});
   follow();

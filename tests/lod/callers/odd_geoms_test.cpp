@@ -43,8 +43,9 @@ class OddGeoms : public ::testing::Test {
     return manager_->add_body({.shape = box, .state = s, .level = level});
   }
 
-  /// A body of two tons, .4 m high, which nothing pulls down; its centre is .2 m above the ground.
+  /// A body of two tons, .4 m high, which nothing pulls down; it stands on a floor of the caller's.
   dBodyID add_bed() const {
+    dCreatePlane(space_, 0, 0, 1, 0);
     const dBodyID bed = dBodyCreate(world_);
     dGeomSetBody(dCreateBox(space_, 2, 2, 0.4), bed);
     dBodySetPosition(bed, 0, 0, 0.2);
@@ -323,7 +324,6 @@ TEST_F(OddGeoms, AFlatGeomLeavesTheOthersOfItsBodySolid) {
     dGeomSetBody(sign, truck);
     dGeomSetOffsetPosition(sign, 0, 0.9, 0.2);
     Manager& manager = start();
-    manager.add_plane(Vec3::UnitZ(), 0.0);
     const BodyId crate = add_box({0, 0, 0.56}, level);
     for (int i = 0; i < 60; ++i) manager.step(kFrame);
     EXPECT_NEAR(manager.state(crate).position.z(), 0.55, 0.02);
@@ -340,7 +340,6 @@ TEST_F(OddGeoms, WhatLiesOnAGeomThatIsDestroyedFalls) {
     dGeomSetBody(shelf, rack);
     dGeomSetOffsetPosition(shelf, 0, 0, 1);
     Manager& manager = start();
-    manager.add_plane(Vec3::UnitZ(), 0.0);
     const BodyId crate = add_box({0, 0, 1.4}, level);
     for (int i = 0; i < 6; ++i) manager.step(kFrame);
     EXPECT_NEAR(manager.state(crate).position.z(), 1.4, 0.01);

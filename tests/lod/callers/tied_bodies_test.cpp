@@ -16,13 +16,12 @@ constexpr double kGravity = 9.81;                     // m/s²
 constexpr double kSledMass = 30.0, kCargoMass = 8.0;  // kg
 constexpr std::array kCheapRungs = {LevelChoice::support, LevelChoice::tables};
 
-struct FloorWorld {
-  FloorWorld() {
+struct BareWorld {
+  BareWorld() {
     dInitODE2(0);
     dWorldSetGravity(world, 0, 0, -kGravity);
-    dCreatePlane(space, 0, 0, 1, 0);
   }
-  ~FloorWorld() {
+  ~BareWorld() {
     dSpaceDestroy(space);
     dWorldDestroy(world);
   }
@@ -37,6 +36,10 @@ struct FloorWorld {
   }
   dWorldID world = dWorldCreate();
   dSpaceID space = dHashSpaceCreate(nullptr);
+};
+
+struct FloorWorld : BareWorld {
+  FloorWorld() { dCreatePlane(space, 0, 0, 1, 0); }
 };
 
 BodyId add_block(Manager& manager, const Vec3& sides, const Vec3& place, double mass, LevelChoice level) {
@@ -171,6 +174,30 @@ TEST(TiedBodies, WeighOnWhatBearsThem) {
       EXPECT_LT(highest, kTop + 0.004) << is_fixed;
       EXPECT_LT(fastest, 0.2) << is_fixed;
     }
+}
+
+// The caller's bodies pass the manager's ground: nothing of it stands behind a board that goes down through
+// it.
+TEST(TiedBodies, ABoardOfTheCallersPassesTheManagersFloorWithItsLoad) {
+  for (const LevelChoice level : kCheapRungs) {
+    BareWorld theirs;
+    Manager manager(theirs.world, theirs.space, {.signatures = coarse_signature});
+    manager.add_plane(Vec3::UnitZ(), 0.0);
+    const dBodyID board = theirs.add_bare(10.0, {0, 0, 0.6});
+    dGeomSetBody(dCreateBox(theirs.space, 3.0, 0.6, 0.1), board);
+    dMass mass;
+    dMassSetBoxTotal(&mass, 10.0, 3.0, 0.6, 0.1);
+    dBodySetMass(board, &mass);
+    const dJointID hinge = dJointCreateHinge(theirs.world, nullptr);
+    dJointAttach(hinge, board, nullptr);
+    dJointSetHingeAnchor(hinge, 0, 0, 0.6), dJointSetHingeAxis(hinge, 0, 1, 0);
+    add_block(manager, {0.4, 0.4, 0.4}, {1.2, 0, 0.85}, 20.0, level);
+    for (int i = 0; i < 30; ++i) {  // its end comes to the floor in the 22nd
+      manager.step(1.0 / 60);
+      EXPECT_LT(std::abs(dJointGetHingeAngleRate(hinge)), 2.5) << i;
+    }
+    EXPECT_GT(dJointGetHingeAngle(hinge), 0.5);
+  }
 }
 
 // Destroyed, let go and given a geom between steps; a snapshot is taken and read in between.
