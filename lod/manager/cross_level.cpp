@@ -142,7 +142,8 @@ void reckon_contacts_of(const Levels& levels, Neighborhood& neighborhood, std::i
     const std::int32_t other = levels.full.index_of(levels.bodies[owner].ode);
     const bool is_theirs = other < index && std::ranges::binary_search(fresh, other);
     if (other < 0 || is_theirs || !levels.bodies.shape(owner)->convex ||
-        !may_meet(own, levels.bodies.properties(owner)) || (may_pair && !may_pair(body.owner, owner)))
+        !may_meet(own, levels.bodies.properties(owner)) || (may_pair && !may_pair(body.owner, owner)) ||
+        are_joined(neighborhood.ode_bodies[std::size_t(index)], neighborhood.ode_bodies[std::size_t(other)]))
       continue;
     reckon_pair_contacts(neighborhood.bodies, index, other, neighborhood.contacts);
   }

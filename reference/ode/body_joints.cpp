@@ -303,6 +303,10 @@ std::vector<dxBody*> find_jointed_group(dxBody* body) {
   return group;
 }
 
+bool are_joined(dxBody* first, dxBody* second) {
+  return dAreConnectedExcluding(first, second, dJointTypeContact) != 0;
+}
+
 bool has_joints(dxBody* body) { return dBodyGetNumJoints(body) > 0 && !joined_bodies(body).empty(); }
 
 void join_bodies(dxBody* first, dxBody* second, JointKind kind, const Vec3& anchor, const Vec3& axis) {

@@ -16,6 +16,8 @@ namespace lodestone {
 std::vector<dxBody*> joined_bodies(dxBody* body);
 /// Whether there are any.
 bool has_joints(dxBody* body);
+/// Whether one is between the two, which then do not meet each other.
+bool are_joined(dxBody* first, dxBody* second);
 /// `body` and all that hang together with it by such joints, through any but kinematic bodies. To be asked
 /// outside of a step.
 std::vector<dxBody*> find_jointed_group(dxBody* body);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "reference/ode/body_joints.h"
+
 namespace lodestone::ode {
 namespace {
 
@@ -19,7 +21,7 @@ bool is_dynamic(dBodyID body) { return body && !dBodyIsKinematic(body); }
 bool may_touch(dBodyID first, dBodyID second, bool asleep = false) {
   const bool any_moves = is_moving(first) || is_moving(second);
   if (first == second || any_moves == asleep || !(is_dynamic(first) || is_dynamic(second))) return false;
-  return !(first && second && dAreConnectedExcluding(first, second, dJointTypeContact));
+  return !(first && second && are_joined(first, second));
 }
 
 bool bits_let_meet(const Body& first, const Body& second) {

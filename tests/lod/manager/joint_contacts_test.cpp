@@ -111,6 +111,36 @@ TEST(JointContacts, SoItDoesForBodiesOfTheCallers) {
 }
 
 // Who sleeps moves no more: what overlaps of theirs have grown is undone by moving their bodies.
+// Two bodies on a joint do not meet: where they are bent into each other nothing of that is felt.
+TEST(JointContacts, LimbsBentIntoEachOtherLieStill) {
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables}) {
+    TheirWorld theirs;
+    Manager manager(theirs.world, theirs.space, kSettings);
+    add(manager, box_shape({1.2, 1.2, 0.3}), testing::at({0, 0, 0.15}), level);
+    const Vec3 joint(0, 0, 0.361);
+    const auto limb = box_shape({0.3, 0.12, 0.12});
+    std::vector<BodyId> limbs;
+    for (const double turn : {0.3, 1.5}) {
+      const Quat way(Eigen::AngleAxisd(turn, Vec3::UnitZ()));
+      limbs.push_back(add(manager, limb, {.position = joint + way * Vec3(0.17, 0, 0), .orientation = way},
+                          LevelChoice::full));
+    }
+    const dJointID ball = dJointCreateBall(theirs.world, nullptr);
+    dJointAttach(ball, manager.ode_body(limbs[0]), manager.ode_body(limbs[1]));
+    dJointSetBallAnchor(ball, joint.x(), joint.y(), joint.z());
+    for (const BodyId body : limbs) manager.add_impulse(body, {0, 0, 3}, manager.state(body).position);
+    run(manager, 3.0);
+    double fastest = 0.0;
+    for (int i = 0; i < 120; ++i) {
+      manager.step(kFrame);
+      for (const BodyId body : limbs)
+        fastest = std::max(fastest, manager.state(body).angular_velocity.norm());
+    }
+    EXPECT_LT(fastest, 0.02) << int(level);  // rad/s
+    for (const BodyId body : limbs) EXPECT_TRUE(manager.asleep(body)) << int(level);
+  }
+}
+
 TEST(JointContacts, TheirsDoNotSinkIntoSleepers) {
   for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
     TheirWorld theirs;
