@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <unordered_set>
+#include <utility>
 
-#include "lod/callers/geom_solids.h"
 #include "lod/contact/reckoned_contacts.h"
 #include "lod/ground/met_ground.h"
-#include "reference/error.h"
 #include "reference/ode/body_joints.h"
 #include "reference/ode/callers_bodies.h"
 
@@ -18,20 +17,6 @@ constexpr double kLeft = 0.02;  // over its longest side: a geom whose bounds mo
 // Over R: so deep what is pressed onto ground begins ODE's step, lest this find no contact there in the next:
 // its ERP leaves depths that rounding decides.
 constexpr double kSunk = 1e-4;
-
-// What contacts need of a body's shape, or of a convex piece of it, about `center`.
-Shape make_contact_shape(std::span<const Vec3> points, const Vec3& center) {
-  Shape shape;
-  shape.name = "a body of the caller's";
-  std::vector<Vec3> around;
-  for (const Vec3& p : points) around.push_back(p - center);
-  shape.hull = make_hull(around);
-  shape.support_map = SupportMap(shape.hull, 8);
-  shape.center_of_mass_in_mesh = center;
-  shape.convex = true;
-  for (const Vec3& v : shape.hull.vertices) shape.radius = std::max(shape.radius, v.norm());
-  return shape;
-}
 
 Mat3 inverse_inertia_per_mass(dxBody* body) { return callers::inverse_inertia(body) * callers::mass(body); }
 
@@ -108,7 +93,6 @@ void CallersBodies::follow(const SpaceMirror& mirror,
     }
     entry.stale = false;
     entry.shape = nullptr;
-    entry.solids.assign(entry.slots.size(), nullptr);
     make_shape(mirror, entry);
   }
 }
@@ -121,58 +105,16 @@ void CallersBodies::follow_inertia(Entry& entry) {
   entry.shape = std::make_shared<const Shape>(std::move(shape));
 }
 
-// About its middle; none of what is flat, which can be no solid.
-std::optional<Shape> make_piece(const std::vector<Vec3>& points) {
-  Vec3 middle = Vec3::Zero();
-  for (const Vec3& p : points) middle += p / double(points.size());
-  try {
-    return make_contact_shape(points, middle);
-  } catch (const InputError&) {
-    return std::nullopt;
-  }
-}
-
-// Each geom a convex piece, or several; of a trimesh that has no pieces, its hull.
 void CallersBodies::make_shape(const SpaceMirror& mirror, Entry& entry) {
-  std::vector<std::vector<Vec3>> pieces;
-  std::optional<double> sphere;  // m, where it is just that
-  for (std::size_t at_slot = 0; at_slot < entry.slots.size(); ++at_slot) {
-    const MirroredGeom& geom = mirror.geoms()[entry.slots[at_slot]];
-    const GeomShape read = read_geom(geom.geom);
-    const Vec3 offset = callers::offset_position(geom.geom);  // not as it stands: the same wherever that is
-    const Quat turn = callers::offset_orientation(geom.geom);
-    const auto in_body = [&](const Vec3& p) { return Vec3(offset + turn * p); };
-    const auto made = std::make_shared<const GroundSolids>(solids_of(read));
-    const GroundSolids& solids = *made;
-    if (solids.size() > 0) entry.solids[at_slot] = made;
-    const bool surface = solids.size() > 0 && solids[0].surface;
-    if (read.kind == GeomKind::sphere) {
-      if (entry.slots.size() == 1 && offset.norm() < 1e-9 * read.radius) sphere = read.radius;
-      std::vector<Vec3>& piece = pieces.emplace_back();
-      for (const Vec3& corner : corners_of(read)) piece.push_back(in_body(corner));
-      continue;
-    }
-    std::vector<Vec3> all;
-    if (surface)
-      for (const Vec3& v : read.vertices) all.push_back(in_body(v));
-    for (int i = 0; !surface && i < int(solids.size()); ++i) {
-      std::vector<Vec3>& piece = pieces.emplace_back();
-      for (const Vec3& v : solids[i].shape->hull.vertices) piece.push_back(in_body(solids[i].center + v));
-    }
-    if (surface) pieces.push_back(std::move(all));
+  std::vector<PlacedGeom> geoms;
+  for (const std::uint32_t slot : entry.slots) {  // not as it stands: the same wherever that is
+    dxGeom* const geom = mirror.geoms()[slot].geom;
+    geoms.push_back({read_geom(geom), callers::offset_position(geom), callers::offset_orientation(geom)});
   }
-  std::vector<Vec3> points;
-  std::vector<Shape> solids;
-  for (const std::vector<Vec3>& piece : pieces) {
-    std::optional<Shape> solid = make_piece(piece);
-    if (!solid) continue;
-    points.insert(points.end(), piece.begin(), piece.end());
-    solids.push_back(std::move(*solid));
-  }
-  if (solids.empty()) return;
-  Shape shape = make_contact_shape(points, Vec3::Zero());
-  if (solids.size() > 1) shape.convex = false, shape.pieces = std::move(solids);
-  if (sphere) shape.sphere_radius = shape.radius = *sphere;
+  BodyForm form = forms_.form_of(std::move(geoms));
+  entry.solids = std::move(form.solids);
+  if (!form.shape) return;
+  Shape shape = *form.shape;
   set_inertia(shape, entry.body);
   entry.shape = std::make_shared<const Shape>(std::move(shape));
 }

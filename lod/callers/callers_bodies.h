@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "lod/callers/body_forms.h"
 #include "lod/ground/ground.h"
 #include "lod/statistical/full_neighbor.h"
 #include "reference/ode/space_mirror.h"
@@ -79,12 +80,13 @@ class CallersBodies {
     bool is_tied() const { return slots.empty(); }
   };
   static void follow_inertia(Entry& entry);
-  static void make_shape(const SpaceMirror& mirror, Entry& entry);
+  void make_shape(const SpaceMirror& mirror, Entry& entry);
   std::vector<dxBody*> find_tied(std::span<dxBody* const> jointed) const;
   std::vector<const Entry*> find_living(const SpaceMirror& mirror) const;
 
   std::vector<Entry> bodies_;  // in the order in which they came
   std::vector<dxBody*> body_of_slot_;
+  BodyForms forms_;
   std::uint32_t owners_ = 0;
 };
 

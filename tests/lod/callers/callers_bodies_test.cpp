@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <vector>
 
 #include "tests/lod/callers/callers_scene.h"
 
@@ -165,6 +166,49 @@ TEST_F(BodiesOfCaller, AShapeIsThatOfAllItsGeoms) {
   follow();
   EXPECT_NEAR(gather()[0].shape->radius, Vec3(1.1, 0.1, 0.1).norm(), 1e-6);
   EXPECT_EQ(callers_.find_parts(*scene_.mirror).size(), 2U);
+}
+
+// What costs milliseconds where it is round is made once, for those to come, too.
+TEST_F(BodiesOfCaller, TheSameGeomsAreMadeOnce) {
+  const auto add_ball = [&](double radius, double offset) {
+    const dBodyID body = scene_.body(2.0, {0, 0, 0});
+    dGeomDestroy(dBodyGetFirstGeom(body));
+    const dGeomID geom = dCreateSphere(scene_.space, radius);
+    dGeomSetBody(geom, body);
+    if (offset > 0.0) dGeomSetOffsetPosition(geom, offset, 0, 0);
+    return body;
+  };
+  const auto solids_of = [&](dBodyID body) {
+    const std::vector<CallersPart> parts = callers_.find_parts(*scene_.mirror);
+    return std::ranges::find(parts, body, &CallersPart::body)->solids;
+  };
+  const auto shape_of = [&](dBodyID body) {
+    std::vector<FullNeighbor> all = gather();
+    return of(all, body).shape;
+  };
+  const dBodyID first = add_ball(0.1, 0.0), alike = add_ball(0.1, 0.0), aside = add_ball(0.1, 0.05),
+                larger = add_ball(0.2, 0.0);
+  follow();
+  const auto made = solids_of(first);
+  EXPECT_EQ(solids_of(alike), made);
+  EXPECT_NE(solids_of(aside), made);
+  EXPECT_NE(solids_of(larger), made);
+  EXPECT_EQ(shape_of(first)->sphere_radius, 0.1);
+  EXPECT_EQ(shape_of(alike)->sphere_radius, 0.1);
+  EXPECT_FALSE(shape_of(aside)->sphere_radius);
+  EXPECT_EQ(shape_of(larger)->sphere_radius, 0.2);
+  for (const dBodyID body : {first, alike}) {
+    dGeomDestroy(dBodyGetFirstGeom(body));
+    dBodyDestroy(body);
+  }
+  follow();
+  const dBodyID later = add_ball(0.1, 0.0);
+  dMass its_own;
+  dMassSetSphereTotal(&its_own, 7.0, 0.3);
+  dBodySetMass(later, &its_own);
+  follow();
+  EXPECT_EQ(solids_of(later), made);
+  EXPECT_NEAR(shape_of(later)->inertia_per_mass(0, 0), 0.4 * 0.09, 1e-12);
 }
 
 TEST_F(BodiesOfCaller, NearAreThoseWhoseBallsMeet) {
