@@ -44,18 +44,18 @@ void read_convex(dGeomID geom, GeomShape& shape) {
   }
 }
 
+// By another geom of its data, at the origin: ODE gives a geom's triangles in the world, and the way back
+// from there would leave what it rounds.
 void read_trimesh(dGeomID geom, GeomShape& shape) {
-  const Vec3 place = to_vec3(dGeomGetPosition(geom));
-  dQuaternion q;
-  dGeomGetQuaternion(geom, q);
-  const Quat to_own = to_quat(q).conjugate();
-  const int count = dGeomTriMeshGetTriangleCount(geom);
+  const dGeomID own = dCreateTriMesh(nullptr, dGeomTriMeshGetData(geom), nullptr, nullptr, nullptr);
+  const int count = dGeomTriMeshGetTriangleCount(own);
   for (int i = 0; i < count; ++i) {
     dVector3 corner[3];
-    dGeomTriMeshGetTriangle(geom, i, &corner[0], &corner[1], &corner[2]);
-    for (const auto& c : corner) shape.vertices.push_back(to_own * (to_vec3(c) - place));
+    dGeomTriMeshGetTriangle(own, i, &corner[0], &corner[1], &corner[2]);
+    for (const auto& c : corner) shape.vertices.push_back(to_vec3(c));
     shape.faces.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
+  dGeomDestroy(own);
 }
 
 }  // namespace

@@ -74,10 +74,16 @@ TEST_F(GeomShapeOf, TrimeshGivesItsFaces) {
   dGeomTriMeshDataBuildSingle(data, vertices, 3 * sizeof(float), 4, faces, 12, 3 * sizeof(dTriIndex));
   const dGeomID mesh = dCreateTriMesh(nullptr, data, nullptr, nullptr, nullptr);
   place(mesh);
+  const dQuaternion askew = {0.9, 0.3, 0.2, 0.1};  // it is the same to the bit, however it stands
+  dGeomSetQuaternion(mesh, askew);
   const GeomShape shape = read_geom(mesh);
   dGeomDestroy(mesh);
   dGeomTriMeshDataDestroy(data);
   ASSERT_EQ(shape.faces.size(), 4u);
+  for (int i = 0; i < 12; ++i) {
+    const float* const corner = vertices + 3 * faces[i];
+    EXPECT_EQ(shape.vertices[std::size_t(i)], Vec3(corner[0], corner[1], corner[2]));
+  }
   double volume = 0.0;
   for (const auto& [a, b, c] : shape.faces)
     volume += shape.vertices[a].dot(shape.vertices[b].cross(shape.vertices[c])) / 6.0;
