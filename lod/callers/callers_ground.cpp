@@ -147,10 +147,10 @@ GroundPose CallersGround::pose_of(const MirroredGeom& geom, double dt, double mo
 void CallersGround::archive(StateArchive& a, const SpaceMirror& mirror) {
   std::vector<GeomPlace> places;
   for (const std::uint32_t slot : moving_)
-    if (!mirror.geoms()[slot].body) places.push_back(mirror.place_of(slot));
+    if (mirror.geoms()[slot].geom) places.push_back(mirror.place_of(slot));
   a(places);
   if (!a.reading()) return;
-  std::erase_if(moving_, [&](std::uint32_t slot) { return !mirror.geoms()[slot].body; });
+  moving_.clear();
   for (const GeomPlace& place : places)
     if (const auto slot = mirror.find_at(place, moving_)) moving_.push_back(*slot);
   std::ranges::sort(moving_);

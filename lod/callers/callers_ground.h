@@ -27,7 +27,7 @@ class CallersGround {
   /// world) is against gravity: what is known by rays alone is met from there.
   void follow(const SpaceMirror& mirror, double dt, double since, const Vec3& up, const Wakes& wakes);
 
-  /// Which of the geoms without a body had a velocity in the last step. Where it reads, the ground has
+  /// Which of the geoms had a velocity in the last step; after the mirror. Where it reads, the ground has
   /// followed them twice since they were put where they were when that was written.
   void archive(StateArchive& a, const SpaceMirror& mirror);
 

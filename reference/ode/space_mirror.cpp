@@ -40,6 +40,18 @@ struct Pose {
   friend bool operator==(const Pose&, const Pose&) = default;
 };
 
+// Where the last refresh saw a geom with a body, and where it is now: the world's step takes it on.
+struct Sighting {
+  GeomPlace now;
+  Pose pose;
+  Quat orientation = Quat::Identity();
+  GeomPlace from;  // the refresh before
+  Quat turned_from = Quat::Identity();
+  double last_way = 0.0;
+  GeomPlace followed;  // as of the last follow(), with bounds alone
+  bool has_moved = false;
+};
+
 // In the order in which the space gives its geoms out.
 struct Given {
   dGeomID geom = nullptr;
@@ -258,6 +270,11 @@ struct SpaceMirror::Impl {
   void note_disturbed();
   void update_bodied();
   void follow(std::size_t index);
+  std::vector<Sighting> find_sightings(const SpaceMirror& self) const;
+  void take(const Sighting& sighting, std::uint32_t slot);
+  std::size_t place_in_bodied(std::uint32_t slot) const {
+    return std::size_t(std::ranges::lower_bound(bodied, slot) - bodied.begin());
+  }
 
   dSpaceID space;
   dGeomID probe;       // meets everything
@@ -494,7 +511,7 @@ double SpaceMirror::way_on(std::uint32_t slot) const {
 
 GeomPlace SpaceMirror::place_of(std::uint32_t slot) const {
   const MirroredGeom& geom = impl_->geoms[slot];
-  return {geom.position, geom.bounds.min(), geom.bounds.max()};
+  return {geom.position, geom.bounds.min(), geom.bounds.max(), geom.body != nullptr};
 }
 
 std::optional<std::uint32_t> SpaceMirror::find_at(const GeomPlace& place,
@@ -504,7 +521,7 @@ std::optional<std::uint32_t> SpaceMirror::find_at(const GeomPlace& place,
   };
   for (std::uint32_t slot = 0; slot < impl_->geoms.size(); ++slot) {
     const MirroredGeom& geom = impl_->geoms[slot];
-    if (geom.geom && !geom.body && alike(geom.position, place.position) &&
+    if (geom.geom && (geom.body != nullptr) == place.has_body && alike(geom.position, place.position) &&
         alike(geom.bounds.min(), place.low) && alike(geom.bounds.max(), place.high) &&
         std::ranges::find(but, slot) == but.end())
       return slot;
@@ -518,7 +535,9 @@ void SpaceMirror::archive(StateArchive& a) {
     Quat turned_from = Quat::Identity();
   };
   std::vector<Course> courses;
+  std::vector<Sighting> sightings;
   std::vector<MirroredGeom>& geoms = impl_->geoms;
+  if (!a.reading()) sightings = impl_->find_sightings(*this);
   for (const std::uint32_t slot : impl_->moved) {
     const MirroredGeom& geom = geoms[slot];
     if (!geom.body)
@@ -526,7 +545,7 @@ void SpaceMirror::archive(StateArchive& a) {
                          {geom.previous_position, geom.previous_bounds.min(), geom.previous_bounds.max()},
                          geom.previous_orientation});
   }
-  a(courses);
+  a(courses, sightings);
   if (!a.reading()) return;
   impl_->moved.clear();
   for (const Course& course : courses) {
@@ -537,7 +556,51 @@ void SpaceMirror::archive(StateArchive& a) {
     geoms[*slot].previous_orientation = course.turned_from,
     geoms[*slot].previous_bounds = {course.from.low, course.from.high};
   }
+  std::vector<std::uint32_t> taken;
+  for (const Sighting& sighting : sightings)
+    if (const std::optional<std::uint32_t> slot = find_at(sighting.now, taken)) {
+      taken.push_back(*slot);
+      impl_->take(sighting, *slot);
+    }
   std::ranges::sort(impl_->moved);
+}
+
+// Of those that the space has still: of the others the caller may have destroyed any.
+std::vector<Sighting> SpaceMirror::Impl::find_sightings(const SpaceMirror& self) const {
+  std::vector<std::uint32_t> there;
+  self.find_bodied_now(there);
+  std::vector<Sighting> found;
+  for (const std::uint32_t slot : there) {
+    const MirroredGeom& geom = geoms[slot];
+    const std::size_t place = place_in_bodied(slot);
+    const Pose now = lodestone::pose_of(geom.geom, true);
+    const bool has_moved = std::ranges::binary_search(moved, slot);
+    if (!has_moved && now == seen[slot].pose) continue;
+    const Eigen::AlignedBox3d bounds = box_of(now.bounds);
+    found.push_back({.now = {to_vec3(now.position.data()), bounds.min(), bounds.max(), true},
+                     .pose = seen[slot].pose,
+                     .orientation = geom.orientation,
+                     .from = {geom.previous_position, geom.previous_bounds.min(), geom.previous_bounds.max()},
+                     .turned_from = geom.previous_orientation,
+                     .last_way = geom.last_way,
+                     .followed = {Vec3::Zero(), followed[place].min(), followed[place].max()},
+                     .has_moved = has_moved});
+  }
+  return found;
+}
+
+// The next refresh is to find it moved from there.
+void SpaceMirror::Impl::take(const Sighting& sighting, std::uint32_t slot) {
+  MirroredGeom& geom = geoms[slot];
+  seen[slot].pose = sighting.pose;
+  ++order[sights[slot].place].print;
+  geom.position = to_vec3(sighting.pose.position.data()), geom.orientation = sighting.orientation,
+  geom.bounds = box_of(sighting.pose.bounds);
+  geom.previous_position = sighting.from.position, geom.previous_orientation = sighting.turned_from,
+  geom.previous_bounds = {sighting.from.low, sighting.from.high};
+  geom.last_way = sighting.last_way;
+  followed[place_in_bodied(slot)] = {sighting.followed.low, sighting.followed.high};
+  if (sighting.has_moved) moved.push_back(slot);
 }
 
 std::span<const std::uint32_t> SpaceMirror::planes() const { return impl_->planes; }

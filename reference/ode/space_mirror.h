@@ -39,6 +39,7 @@ struct MirroredGeom {
 /// Where a geom stands, by which the reader of a snapshot finds it again.
 struct GeomPlace {
   Vec3 position = Vec3::Zero(), low = Vec3::Zero(), high = Vec3::Zero();  ///< m; of its bounds
+  bool has_body = false;
 };
 
 class SpaceMirror {
@@ -70,10 +71,11 @@ class SpaceMirror {
   /// refreshes; 0 where it was put elsewhere once.
   double way_on(std::uint32_t slot) const;
   GeomPlace place_of(std::uint32_t slot) const;
-  /// The slot of a geom without a body that stands there, none of `but`.
+  /// The slot of a geom that stood there in the last refresh, none of `but`.
   std::optional<std::uint32_t> find_at(const GeomPlace& place, std::span<const std::uint32_t> but) const;
-  /// How the geoms without a body that the last refresh found moved came there. Where it reads, that refresh
-  /// found all where they were when it was written, and none moved.
+  /// How the geoms that the last refresh found moved came there, and where it saw those with a body, which
+  /// the world's step takes on. Where it reads, the last refresh found all where they were when it was
+  /// written, and none moved.
   void archive(StateArchive& a);
   /// Slots, ascending, of the planes.
   std::span<const std::uint32_t> planes() const;

@@ -514,6 +514,47 @@ TEST(ManagerSnapshot, WhatTouchesACallersBodyGoesOnToTheBit) {
   EXPECT_EQ(reader.manager.state_hash(), writer.manager.state_hash());
 }
 
+// Who sleeps at `support` or `tables` where one of his bodies goes by wakes as it leaves. Snapshots at each
+// step of its way.
+TEST(ManagerSnapshot, WhoSleepsWhereHisBodyGoesByGoesOnToTheBit) {
+  for (const LevelChoice level : kOfEachRung) {
+    CallersScene his;
+    Manager manager(his.world, his.space, {.signatures = testing::coarse_signature});
+    dWorldSetGravity(his.world, 0, 0, -kGravity);
+    dCreatePlane(his.space, 0, 0, 1, 0);
+    const dBodyID flier = his.body(80.0, {-1.5, 0, 0.51});
+    dBodySetGravityMode(flier, 0);
+    for (int i = 0; i < 4; ++i)
+      testing::add(manager, SavedWorld::shapes()[0], testing::at({0.45 * i - 0.6, 0, 0.15}), level);
+    for (int i = 0; i < 300; ++i) manager.step(kFrame);
+    ASSERT_EQ(manager.report().asleep, 4) << int(level);
+    struct Moment {
+      Bytes snapshot;
+      double at = 0.0;
+      std::uint64_t next = 0;
+    };
+    std::vector<Moment> moments;
+    const auto step = [&] {
+      dBodyEnable(flier), dBodySetLinearVel(flier, 2, 0, 0), dBodySetAngularVel(flier, 0, 0, 0);
+      manager.step(kFrame);
+    };
+    int least_asleep = 4;
+    for (int i = 0; i < 60; ++i) {
+      moments.push_back({manager.snapshot(), dBodyGetPosition(flier)[0]});
+      step();
+      moments.back().next = manager.state_hash();
+      least_asleep = std::min(least_asleep, manager.report().asleep);
+    }
+    EXPECT_LT(least_asleep, level == LevelChoice::full ? 5 : 4) << int(level);
+    for (const Moment& moment : moments) {
+      dBodySetPosition(flier, moment.at, 0, 0.51);
+      manager.restore(moment.snapshot);
+      step();
+      EXPECT_EQ(manager.state_hash(), moment.next) << int(level) << ", " << moment.at << " m";
+    }
+  }
+}
+
 // A body of `tables`, which cannot be without one.
 // Sleepers on a slope, too, that are woken after it.
 TEST(ManagerSnapshot, WhoeverIsWokenByItsReaderGoesOnToTheBit) {
