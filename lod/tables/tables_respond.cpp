@@ -113,6 +113,7 @@ void TablesLevel::respond_as_paper(ContactTally& tally) {
 }
 
 void TablesLevel::sort_ground() {
+  constexpr float kNoPlane = 1e9f;  // m: to what comes near none of them, whatever was there before it
   clips_.end_of_touched();
   each_block([&](std::int64_t begin, std::int64_t end) {
     if (constants_.hulls) hulls_.choose(begin, end);
@@ -125,6 +126,7 @@ void TablesLevel::sort_ground() {
          carried != all_carried.end() && carried->place < end; ++carried) {
       std::uint8_t& state = step_.on_ground[std::size_t(carried->place)];
       const bool among_others = state >= std::uint8_t(GroundState::lies) && step_.touches(carried->place);
+      if (state == std::uint8_t(GroundState::free)) step_.gap[std::size_t(carried->place)] = kNoPlane;
       if (state != std::uint8_t(GroundState::stands) && !among_others)
         state = std::uint8_t(GroundState::near);  // by itself, in the frame of what carries it
     }
