@@ -3,6 +3,7 @@
 // bodies, meet nobody, but pull and weigh.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <span>
@@ -40,6 +41,9 @@ class CallersBodies {
   void follow_tied(std::span<dxBody* const> jointed,
                    const std::function<void(std::uint32_t, const GroundBits&)>& tell);
   std::size_t size() const { return bodies_.size(); }
+  bool contains(dxBody* body) const {
+    return std::ranges::find(bodies_, body, &Entry::body) != bodies_.end();
+  }
 
   /// Appends them as neighbours, as they are now, and what holds them up: `first` is the index that the first
   /// of them has there.

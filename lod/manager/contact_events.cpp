@@ -146,8 +146,10 @@ void ContactEvents::tell(ContactPhase phase, const Pair& pair) {
   if (phase == ContactPhase::end) event.impulse = event.speed = 0.0;
 }
 
-// A removed one does not.
+// A removed one does not, nor does a body of the caller's that he has destroyed.
 bool ContactEvents::rests(const ContactSide& side) const {
+  if (side.callers)
+    return levels_.callers.bodies.contains(side.callers) && !callers::is_enabled(side.callers);
   return side.kind != ContactSide::Kind::body ||
          (levels_.bodies.valid(side.body) && levels_.asleep(side.body.index));
 }
@@ -198,11 +200,12 @@ void ContactEvents::finish(double dt, std::span<const BodyId> woke) {
     const bool there =
         levels_.bodies.valid(pair.last.first.body) &&
         (pair.last.second.kind != ContactSide::Kind::body || levels_.bodies.valid(pair.last.second.body));
-    pair.since_s = pair.touches ? 0.0 : pair.since_s + dt;
+    const bool rest = rests(pair.last.first) && rests(pair.last.second);
+    pair.since_s = pair.touches || rest ? 0.0 : pair.since_s + dt;
     pair.touches = false;
     if (!there || pair.since_s >= kApart)
       tell(ContactPhase::end, pair);
-    else if (rests(pair.last.first) && rests(pair.last.second))
+    else if (rest && !pair.last.second.callers)  // of whose waking nobody tells
       set_aside(pair);
     else
       kept_.push_back(pair);

@@ -1,11 +1,13 @@
 // Contact events of bodies that sleep, wake, change rung and are removed: said once, and nothing said of what
 // did not change.
 #include <gtest/gtest.h>
+#include <ode/ode.h>
 
 #include <map>
 #include <tuple>
 
 #include "tests/allocations.h"
+#include "tests/lod/callers/callers_scene.h"
 #include "tests/lod/manager/manager_fixture.h"
 
 namespace lodestone::contact_events_test {
@@ -194,6 +196,44 @@ TEST(ContactEvents, OfBodiesAtTablesAreOnBothBodies) {
     }
   }
   EXPECT_GT(begun, 20);
+}
+
+// It presses on a crate until that sleeps, and goes without waking it, or is destroyed.
+TEST(ContactEvents, ABodyOfHisThatLeavesASleeperTouchesItNoMore) {
+  for (const LevelChoice level : {LevelChoice::full, LevelChoice::support, LevelChoice::tables})
+    for (const bool is_destroyed : {false, true}) {
+      ManagerSettings settings = telling();
+      settings.signatures = coarse_signature;
+      CallersScene his;
+      Manager manager(his.world, his.space, settings);
+      dWorldSetGravity(his.world, 0, 0, -9.81);
+      dCreatePlane(his.space, 0, 0, 1, 0);
+      const BodyId crate = add(manager, box_shape(kSides), testing::at({0, 0, 0.15}), level);
+      const dBodyID pusher = his.body(20.0, {-0.352, 0, 0.2});
+      dBodySetGravityMode(pusher, 0);
+      int begins = 0, ends = 0;
+      const auto step = [&] {
+        manager.step(kFrame);
+        for (const ContactEvent& event : manager.contact_events()) {
+          if (!event.second.callers) continue;
+          begins += event.phase == ContactPhase::begin, ends += event.phase == ContactPhase::end;
+        }
+      };
+      for (int i = 0; i < 300; ++i) {
+        dBodyEnable(pusher), dBodyAddForce(pusher, 5, 0, 0);
+        step();
+      }
+      EXPECT_EQ(begins, 1) << int(level);
+      EXPECT_EQ(ends, 0) << int(level);
+      if (is_destroyed) dGeomDestroy(dBodyGetFirstGeom(pusher)), dBodyDestroy(pusher);
+      for (int i = 0; i < 60; ++i) {
+        if (!is_destroyed) dBodySetLinearVel(pusher, -0.2, 0, 0);
+        step();
+      }
+      EXPECT_EQ(begins, 1) << int(level);
+      EXPECT_EQ(ends, 1) << int(level) << (is_destroyed ? ", destroyed" : "");
+      EXPECT_TRUE(manager.asleep(crate)) << int(level);
+    }
 }
 
 TEST(ContactEvents, AskedForAgainTheyBeginAnew) {
