@@ -44,7 +44,7 @@ double gain_of(std::uint64_t seed) {
   return gain / at_first;
 }
 
-// Of sixteen .018 in the mean and .087 at most; .089 and .23 where more than two bodies might have twice the
+// Of sixteen .018 in the mean and .087 at most; .093 and .23 where more than two bodies might have twice the
 // energy after a substep, and overlaps gave what their depths ask for in every point.
 TEST(Columns, OfUnequalMassesAreNotThrownUp) {
   constexpr int kColumns = 16;
