@@ -42,8 +42,8 @@ struct Counters {
   /// so that the pair is held.
   std::int64_t contacts_dropped = 0;
   std::int64_t states_recovered = 0;  ///< bodies that were no longer finite or sound: put back
-  /// Substeps of the full level by dWorldQuickStep: the largest island had more than 150 contacts, or
-  /// dWorldStep had given up on it.
+  /// Substeps of the full level by dWorldQuickStep: the largest island had more than 60 contacts
+  /// (150 where bodies that touch differ twelvefold in mass), or dWorldStep had given up on it.
   std::int64_t full_quick_steps = 0;
   std::int64_t full_swallowed = 0;  ///< times that a full body was wholly inside another in a substep
   /// Times that a full body, faster than it is thick in a substep, was stopped at what it would have gone

@@ -37,6 +37,9 @@ Vec3 arm_on(const ContactSide& side, const Vec3& point) {
   return state.orientation.conjugate() * (point - state.position);
 }
 
+// QuickStep's iterations carry a blow through a body a twelfth as heavy no more as they should.
+constexpr double kUnevenMasses = 12.0;
+
 Vec3 tangential(const Vec3& v, const Vec3& normal) { return v - v.dot(normal) * normal; }
 
 }  // namespace
@@ -66,7 +69,7 @@ ContactJoints::ContactJoints(dWorldID world, const OdeSettings& settings, const 
 
 ContactJoints::~ContactJoints() { dJointGroupDestroy(group_); }
 
-void ContactJoints::begin(double h, int attempt) {
+void ContactJoints::begin(double h, int attempt, double surface_layer) {
   constexpr double kAddedCfm[kMostAttempts] = {0.0, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5},
                    kUnevenness[kMostAttempts] = {1e-4, 1e-3, 1e-2, 3e-2, 1e-1, 3e-1};
   dVector3 gravity;
@@ -74,10 +77,13 @@ void ContactJoints::begin(double h, int attempt) {
   gravity_ = to_vec3(gravity);
   contacts_.clear();
   carried_.clear();
+  is_uneven_ = false;
   if (touches_) touches_->begin_substep();
   h_ = h;
   attempt_cfm_ = cfm_ + kAddedCfm[attempt];
-  unevenness_ = kUnevenness[attempt] * gravity_.norm() * h * h;
+  const double fall = gravity_.norm() * h * h;
+  unevenness_ = kUnevenness[attempt] * fall;
+  unpushed_ = surface_layer * fall;
   // ODE pushes overlap apart at erp × depth / h; capping the depth caps that speed for our contacts alone,
   // whosever the world is.
   const double erp = erp_ * (h < correcting_time_ ? h / correcting_time_ : 1.0);
@@ -90,7 +96,8 @@ void ContactJoints::add(const ContactSide& first, const ContactSide& second,
   const ContactLaw pair = law(first.material, second.material);
   joint_.surface.mu = pair.friction;
   joint_.surface.bounce = pair.restitution;
-  const double lighter = std::min(mass_of(first.body), mass_of(second.body));
+  const auto [lighter, heavier] = std::minmax({mass_of(first.body), mass_of(second.body)});
+  is_uneven_ |= first.body && second.body && heavier >= kUnevenMasses * lighter;
   joint_.surface.soft_cfm = attempt_cfm_ * cfm_share(lighter) * light_share(lighter);
   // Friction's is the world's, but for light bodies.
   joint_.surface.slip1 = joint_.surface.slip2 = light_share(lighter) > 1.0 ? joint_.surface.soft_cfm : 0.0;
@@ -119,6 +126,7 @@ void ContactJoints::add_joint(const ContactSide& first, const ContactSide& secon
   joint_.geom.depth = first.body && second.body
                           ? depth_of(point)
                           : std::min(point.depth, deepest_ + first.way_on + second.way_on);
+  joint_.geom.depth -= unpushed_;
   joint_.surface.mode = mode_;
   joint_.surface.motionN = point.lift;
   if (point.lift != 0.0) joint_.surface.mode |= dContactMotionN;

@@ -70,8 +70,8 @@ class ContactJoints {
   static constexpr int kMostAttempts = 6;
   /// Forgets the last substep's contacts; the next are for a step of `h` seconds. From one attempt at a step
   /// to the next (0 … kMostAttempts − 1) the contacts are a little softer and their depths a little more
-  /// uneven.
-  void begin(double h, int attempt);
+  /// uneven. `surface_layer`, of g h²: overlap that is not pushed apart.
+  void begin(double h, int attempt, double surface_layer);
   /// Depths may be negative by what bodies at rest are left to overlap (kRestingDepth).
   void add(const ContactSide& first, const ContactSide& second, std::span<const ContactPoint> points);
   /// Destroys the joints; contacts() stays.
@@ -87,6 +87,8 @@ class ContactJoints {
   std::span<const OdeContact> contacts() const { return contacts_; }
   /// Bodies that touch a surface that moves, in no order.
   std::span<const dBodyID> carried() const { return carried_; }
+  /// Whether bodies that touch differ twelvefold and more in mass.
+  bool is_uneven() const { return is_uneven_; }
   std::int64_t made() const { return made_; }
   void archive(StateArchive& a) { a(contacts_); }
   void forget() { contacts_.clear(); }
@@ -108,11 +110,12 @@ class ContactJoints {
   int mode_;          // of every contact
   bool slides_straight_;
   double erp_, cfm_, max_correcting_velocity_, correcting_time_, attempt_cfm_ = 0.0;
-  double h_ = 0.0, deepest_ = 0.0, unevenness_ = 0.0;
+  double h_ = 0.0, deepest_ = 0.0, unevenness_ = 0.0, unpushed_ = 0.0;
   Vec3 gravity_ = Vec3::Zero();
   Touches* touches_ = nullptr;
   std::vector<OdeContact> contacts_;
   std::vector<dBodyID> carried_;
+  bool is_uneven_ = false;
   std::int64_t made_ = 0;
 };
 

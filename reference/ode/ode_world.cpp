@@ -138,7 +138,7 @@ void OdeWorld::step(double dt, int substeps) {
     }
     if (substeps > 1) impl_->collision.move_on(0.0);
   } else {
-    impl_->joints.begin(dt, 0);  // no contacts
+    impl_->joints.begin(dt, 0, 0.0);  // no contacts
   }
   impl_->end_step();
   impl_->counters.messages += messages_of_this_thread() - messages_before;
@@ -253,7 +253,8 @@ void OdeWorld::archive(StateArchive& a) {
       if (body.body) impl.collision.broad_phase().note_sleep(body);
   if (impl.mirror) a(*impl.mirror);
   archive_boxes(a, impl.vacated);
-  a(impl.joints, impl.collision, impl.quick_steps, impl.callers_attempt, impl.callers_calm);
+  a(impl.joints, impl.collision, impl.quick_steps, impl.was_quick_step, impl.callers_attempt,
+    impl.callers_calm);
   double cfm = dWorldGetCFM(impl.world);
   a(cfm);
   if (impl.own_world) dWorldSetCFM(impl.world, cfm);
@@ -268,6 +269,7 @@ void OdeWorld::begin_anew() {
   impl.joints.forget();
   impl.vacated.clear();
   impl.quick_steps = 0;
+  impl.was_quick_step = false;
   impl.callers_attempt = impl.callers_calm = 0;
 }
 

@@ -49,8 +49,13 @@ struct OdeSettings {
   std::uint64_t seed = 1;
   bool quick_step = false;  ///< dWorldQuickStep instead of dWorldStep (another friction law)
   int quick_step_iterations = 20;
+  /// Of g h²: overlap that is left to bodies whose last substep was QuickStep's, as by ODE's contact surface
+  /// layer. Pushed apart to nothing, they are parted by what its iterations leave of an error, fall for a
+  /// substep and land again: a heap never comes to rest.
+  double quick_step_layer = 0.0;
   /// Contacts of one island above which a substep is QuickStep's: dWorldStep's time grows with their cube.
-  int direct_contacts_max = 1 << 30;
+  /// The second where bodies that touch differ twelvefold in mass.
+  int direct_contacts_max = 1 << 30, uneven_direct_contacts_max = 1 << 30;
   /// ODE's error reduction and constraint force mixing (s/kg) at contacts; less, in proportion, for bodies
   /// above 100 kg, whose impacts it would soften.
   double erp = 0.2, cfm = 1e-10;

@@ -68,6 +68,7 @@ struct OdeWorld::Impl {
   OdeCounters counters;
   OdeTimes times;
   std::uint64_t quick_steps = 0;
+  bool was_quick_step = false;  // the last substep, of those that are the world's own
   // Of a caller's steps: what contacts their solver is given, since one of the last kCalm was given up on,
   // and how many were not since.
   static constexpr std::int32_t kCalm = 600;

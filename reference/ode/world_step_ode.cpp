@@ -110,6 +110,7 @@ void OdeWorld::Impl::end_step() {
 void OdeWorld::Impl::begin_callers_substep(double h) {
   count_messages();
   callers_messages = messages_of_this_thread();
+  was_quick_step = false;
   begin_substep(h, callers_attempt);
 }
 
@@ -162,7 +163,7 @@ void OdeWorld::Impl::begin_substep(double h, int attempt) {
 
 void OdeWorld::Impl::find_contacts(double h, int attempt) {
   push_bodies();
-  joints.begin(h, attempt);
+  joints.begin(h, attempt, was_quick_step ? settings.quick_step_layer : 0.0);
   {
     const Timing timing(times.collision_ms);
     collision.collide(bodies, joints, h);
@@ -217,11 +218,12 @@ bool OdeWorld::Impl::advance(double h, bool by_quick_step) {
   const std::int64_t messages_before = messages_of_this_thread();
   const std::span<const OdeContact> contacts = joints.contacts();
   energy_bound.note(bodies, contacts, joints.gravity(), joints.pushing(), h);
-  const bool too_many = int(contacts.size()) > settings.direct_contacts_max &&
-                        largest_island(contacts) > settings.direct_contacts_max;
+  const int most = joints.is_uneven() ? settings.uneven_direct_contacts_max : settings.direct_contacts_max;
+  const bool too_many = int(contacts.size()) > most && largest_island(contacts) > most;
   try {
     const RecoverableScope scope;
-    if (settings.quick_step || by_quick_step || too_many) {
+    was_quick_step = settings.quick_step || by_quick_step || too_many;
+    if (was_quick_step) {
       ++counters.quick_steps;
       count_uneven_contacts();
       const SeededRandom random(settings.seed + 0x9e3779b97f4a7c15u * ++quick_steps);
