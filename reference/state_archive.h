@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -85,6 +86,14 @@ class StateArchive {
   template <ArchivesItself T>
   void take(T& value) {
     value.archive(*this);
+  }
+  /// Of an empty one no more than that: what lies there instead of a value differs from run to run.
+  template <class T>
+  void take(std::optional<T>& value) {
+    auto there = std::uint8_t(value.has_value());
+    take(there);
+    if (reading_) value.reset();
+    if (there) take(reading_ ? value.emplace() : *value);
   }
   template <class T>
   void take(std::vector<T>& values) {

@@ -1,6 +1,7 @@
 // Where two statistical bodies meet: a shared normal and shared points.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "lod/body.h"
 #include "lod/contact/contact_manifold.h"
 #include "lod/contact/hull_gap.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
@@ -35,6 +37,12 @@ struct HeldContact {
   Vec3 normal = Vec3::UnitZ();
   std::int32_t count = 0;
   std::array<Eigen::Vector3f, 4> on_first, on_second;  ///< m, its points on each body's surface, body axes
+
+  void archive(StateArchive& a) {
+    a(normal, count);
+    for (std::size_t i = 0; i < std::min(std::size_t(count), on_first.size()); ++i)
+      a(on_first[i], on_second[i]);
+  }
 };
 HeldContact hold(const PairContact& contact, const PairBody& first, const PairBody& second);
 /// Where its points are now, and their gaps along the normal that it was found with.
@@ -64,6 +72,8 @@ double look_along(HullGap& found, const PairBody& first, const PairBody& second)
 struct KnownGap {
   HullGap axis = {.normal = Vec3::Zero()};  ///< where the next search begins; zero: anywhere
   std::optional<PairPose> when;             ///< how they lay then; none: never looked for
+
+  void archive(StateArchive& a) { a(axis, when); }
 };
 
 /// How two bodies go on, and over what they pass: who lies over a face of the other's hull, but for `hair`,

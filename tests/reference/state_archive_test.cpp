@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
@@ -81,6 +82,21 @@ TEST(StateArchive, HashedValuesGoInTheOrderOfTheirKeys) {
   EXPECT_EQ(bytes_of(other), bytes_of(example()));
   other.hashed[0] = 1e-300;
   EXPECT_NE(bytes_of(other), bytes_of(example()));
+}
+
+// Of a value that went nothing is left.
+TEST(StateArchive, AnEmptyOptionalIsWrittenAsNothing) {
+  std::optional<Vec3> never, gone = Vec3(1, 2, 3), there = Vec3(4, 5, 6);
+  gone.reset();
+  StateArchive of_never, of_gone, of_there;
+  of_never(never), of_gone(gone), of_there(there);
+  EXPECT_EQ(of_never.bytes(), std::vector<std::byte>{std::byte(0)});
+  EXPECT_EQ(of_gone.bytes(), of_never.bytes());
+  std::optional<Vec3> read = Vec3(7, 8, 9);
+  StateArchive(of_gone.bytes(), {})(read);
+  EXPECT_EQ(read, std::nullopt);
+  StateArchive(of_there.bytes(), {})(read);
+  EXPECT_EQ(read, there);
 }
 
 // Cut anywhere it is an error, never a read beyond the end.

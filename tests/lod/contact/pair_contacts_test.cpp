@@ -161,5 +161,24 @@ TEST(PairContacts, AGapThatWasFoundIsNeverThoughtWiderThanItIs) {
   EXPECT_GT(told, 500);
 }
 
+// What stands beyond the points of a contact was never written.
+TEST(HeldContact, IsArchivedByItsPointsAlone) {
+  HeldContact one, other;
+  one.count = other.count = 2;
+  for (std::size_t i = 0; i < 4; ++i) {
+    one.on_first[i] = one.on_second[i] = Eigen::Vector3f::Constant(float(i));
+    other.on_first[i] = other.on_second[i] = Eigen::Vector3f::Constant(i < 2 ? float(i) : 7.0f);
+  }
+  StateArchive of_one, of_other;
+  of_one(one), of_other(other);
+  EXPECT_EQ(of_one.bytes(), of_other.bytes());
+  HeldContact read;
+  StateArchive reader(of_one.bytes(), {});
+  reader(read);
+  EXPECT_TRUE(reader.at_end());
+  EXPECT_EQ(read.count, 2);
+  EXPECT_EQ(read.on_second[1], one.on_second[1]);
+}
+
 }  // namespace
 }  // namespace lodestone
