@@ -13,9 +13,11 @@
 namespace lodestone {
 
 enum class LogLevel : std::uint8_t {
-  info,     ///< a signature is there; promotions that were put off
-  warning,  ///< trouble that was met and mended: states recovered, contacts dropped, ODE's messages
-  error,    ///< a signature that cannot be had, before the InputError that follows
+  info,  ///< a signature is there; promotions that were put off
+  /// Trouble that was met and mended: states recovered, contacts dropped, ODE's messages. Once, that there is
+  /// no viewpoint.
+  warning,
+  error,  ///< a signature that cannot be had, before the InputError that follows
 };
 
 /// Called on the thread that steps, within step(), with one line of text. It must not change the manager.

@@ -170,7 +170,8 @@ class Manager {
   void dissolve_group(GroupId group);             ///< puts its joints on first, where they are off
   void set_policy(const PolicySettings& policy);  ///< from the next step on
   // From where the world is looked at, from the next step on; positions (m, within 1e12 of the origin) alone
-  // see all around, in pictures as Viewpoint has them.
+  // see all around, in pictures as Viewpoint has them. Where there is none, as at first, every body is as far
+  // as can be: no policy makes one full then, which why() says, and the log as a warning.
   void set_viewpoints(std::span<const Vec3> positions);
   void set_viewpoints(std::span<const Viewpoint> viewpoints);
   void set_viewpoints(std::initializer_list<Viewpoint> viewpoints);

@@ -260,7 +260,9 @@ void Manager::Impl::finish_report() {
                 counts_work(policy) ? std::nullopt : std::optional(budget_of(policy)), costs, report);
   }
   audit.end_step(underway->dt, report);
-  step_log.end_step(report);
+  const bool decides =
+      levels.bodies.count(LevelChoice::automatic) + levels.bodies.count(LevelChoice::statistical) > 0;
+  step_log.end_step(report, decides && choose.views().empty());
 }
 
 }  // namespace lodestone

@@ -124,8 +124,9 @@ Why Manager::explain(BodyId body) const {
 std::string Manager::why(BodyId body) const { return text_of(explain(body)); }
 
 std::string text_of(const Why& why) {
-  return why.placed ? fmt::format("{}: {}", name_of(why.rung), text_of(why.rule))
-                    : "at no level yet: the next step chooses one";
+  if (!why.placed) return "at no level yet: the next step chooses one";
+  const bool unseen = why.rule == Rule::far && std::isinf(why.distance_m);
+  return fmt::format("{}: {}", name_of(why.rung), unseen ? "there is no viewpoint" : text_of(why.rule));
 }
 
 std::string_view text_of(Rule rule) {

@@ -2,12 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "reference/ode/ode_world.h"
 
 namespace lodestone {
 
-void StepLog::end_step(const StepReport& report) const {
+void StepLog::end_step(const StepReport& report, bool blind) {
   if (!log_) return;
+  if (blind && !std::exchange(told_blind_, true))
+    log_(LogLevel::warning,
+         fmt::format("step {}: there is no viewpoint, so to the policy every body is far", report.step));
   const auto say = [&](LogLevel level, std::int64_t Counters::*count, std::string_view what) {
     if (const std::int64_t times = report.counters.*count - before_.*count; times > 0)
       log_(level, fmt::format("step {}: {} {}", report.step, times, what));

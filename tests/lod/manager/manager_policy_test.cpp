@@ -25,7 +25,27 @@ TEST(Explain, BeforeItsFirstStepNothingIsSaidYet) {
   EXPECT_EQ(manager.why(body), "at no level yet: the next step chooses one");
   manager.step(kFrame);
   EXPECT_TRUE(manager.explain(body).placed);
+  EXPECT_EQ(manager.why(body), "support: there is no viewpoint");
+}
+
+// Of a policy that has none nobody would know why no body is full.
+TEST(Explain, ThatThereIsNoViewpointIsLoggedOnce) {
+  Manager manager = still_world({});
+  std::vector<std::string> lines;
+  manager.set_log([&](LogLevel level, std::string_view text) {
+    if (level == LogLevel::warning) lines.emplace_back(text);
+  });
+  manager.add_body({.shape = sphere_shape(0.5), .level = LevelChoice::full});
+  manager.step(kFrame);  // nothing is the policy's
+  EXPECT_TRUE(lines.empty());
+  const BodyId body = manager.add_body({.shape = sphere_shape(0.5), .state = testing::at({3, 0, 0})});
+  for (int i = 0; i < 3; ++i) manager.step(kFrame);
+  EXPECT_EQ(lines,
+            std::vector<std::string>{"step 2: there is no viewpoint, so to the policy every body is far"});
+  view_from(manager, Vec3(100, 0, 0));
+  manager.step(kFrame);
   EXPECT_EQ(manager.why(body), "support: far from every viewpoint");
+  EXPECT_EQ(lines.size(), 1U);
 }
 
 // The size in the picture, by hand: diameter over distance, in pixels of the field of view.

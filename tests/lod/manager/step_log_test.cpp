@@ -47,6 +47,23 @@ TEST(StepLog, EachKindOfTroubleHasALine) {
   }
 }
 
+TEST(StepLog, ThatNobodyLooksIsSaidOnceToEachFunction) {
+  StepLog log;
+  Lines lines;
+  StepReport report;
+  report.step = 5;
+  const auto take = [&](LogLevel level, std::string_view text) { lines.emplace_back(level, text); };
+  log.end_step(report, true);  // to nobody
+  log.set(take);
+  for (int i = 0; i < 2; ++i) log.end_step(report, true), log.end_step(report, false);
+  EXPECT_EQ(
+      lines,
+      (Lines{{LogLevel::warning, "step 5: there is no viewpoint, so to the policy every body is far"}}));
+  log.set(take);
+  log.end_step(report, true);
+  EXPECT_EQ(lines.size(), 2U);
+}
+
 TEST(StepLog, WithoutAFunctionNothingIsSaid) {
   StepLog log;
   StepReport report;
