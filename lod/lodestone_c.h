@@ -289,6 +289,8 @@ lodestone_result lodestone_make_group(lodestone_manager* manager, const lodeston
                                       void (*after_promotion)(void* context, lodestone_group group),
                                       void* context, lodestone_group* group);
 lodestone_result lodestone_dissolve_group(lodestone_manager* manager, lodestone_group group);
+bool lodestone_is_valid_group(const lodestone_manager* manager,
+                              lodestone_group group); /* of a null manager none is */
 
 lodestone_result lodestone_get_state(const lodestone_manager* manager, lodestone_body body,
                                      lodestone_state* state);

@@ -11,7 +11,7 @@
 //   that throws SimulationError (reference/simulation_error.h), and the manager can be read and destroyed,
 //   and steps no more.
 // - Ids. That of a removed body, ground or group is stale for good, though its index comes back: valid()
-//   tells so of bodies and ground, every other call throws.
+//   tells so, every other call throws.
 // - Threads. A manager is used by one thread at a time; between two steps any number of threads may call its
 //   const functions.
 #pragma once
@@ -165,7 +165,7 @@ class Manager {
   /// Bodies that change rung together, all or none, as the nearest of them and at the cost of all; what wakes
   /// one of a sleeping group wakes all. Joints of the caller's (ode_body) pin a body at the full level, in a
   /// group or not, unless the group has GroupJoints. Refused are no body, one twice, and one that is in a
-  /// group already.
+  /// group already. A group ends with the last of its bodies.
   GroupId make_group(std::span<const BodyId> bodies, GroupJoints joints = {});
   void dissolve_group(GroupId group);             ///< puts its joints on first, where they are off
   void set_policy(const PolicySettings& policy);  ///< from the next step on
@@ -220,6 +220,7 @@ class Manager {
 
   int bodies() const;
   bool valid(BodyId body) const;  ///< the one question that a stale id answers
+  bool valid(GroupId group) const;
   RigidState state(BodyId body) const;
   /// Of many at once: as many states as bodies.
   void read_states(std::span<const BodyId> bodies, std::span<RigidState> states) const;

@@ -108,6 +108,10 @@ lodestone_result lodestone_dissolve_group(lodestone_manager* manager, lodestone_
   return guarded([&] { of(manager).dissolve_group({group.index, group.generation}); });
 }
 
+bool lodestone_is_valid_group(const lodestone_manager* manager, lodestone_group group) {
+  return manager && manager->manager.valid(GroupId{group.index, group.generation});
+}
+
 lodestone_result lodestone_explain(const lodestone_manager* manager, lodestone_body id,
                                    lodestone_reason* reason) {
   return guarded([&] {

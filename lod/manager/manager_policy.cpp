@@ -89,6 +89,8 @@ void Manager::dissolve_group(GroupId group) {
   impl_->recorder.note(Call::dissolve_group, group);
 }
 
+bool Manager::valid(GroupId group) const { return impl_->choose.groups().valid(group); }
+
 Why Manager::explain(BodyId body) const {
   const std::uint32_t index = impl_->index_of(body);
   const Levels& levels = impl_->levels;

@@ -114,6 +114,19 @@ TEST(CBodies, WhyFitsTheRoomThatThereIs) {
   }
 }
 
+TEST(CBodies, AGroupEndsWithItsLastBody) {
+  CScene scene;
+  scene.add({0, 0, 1});
+  lodestone_group group{};
+  EXPECT_FALSE(lodestone_is_valid_group(scene.c, group));
+  ASSERT_EQ(lodestone_make_group(scene.c, scene.c_bodies.data(), 1, nullptr, nullptr, nullptr, &group),
+            LODESTONE_OK);
+  EXPECT_TRUE(lodestone_is_valid_group(scene.c, group));
+  EXPECT_FALSE(lodestone_is_valid_group(nullptr, group));
+  ASSERT_EQ(lodestone_remove_body(scene.c, scene.c_bodies[0]), LODESTONE_OK);
+  EXPECT_FALSE(lodestone_is_valid_group(scene.c, group));
+}
+
 TEST(CBodies, BadCallsAreRefusedAndChangeNothing) {
   CScene s;
   s.add({0, 0, 0.5});

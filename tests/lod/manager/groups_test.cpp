@@ -209,6 +209,22 @@ TEST(Groups, ARemovedMemberLeaves) {
   EXPECT_THROW(manager.dissolve_group(group), InputError);
 }
 
+TEST(Groups, OneEndsWithItsLastBodyOrWhenItIsDissolved) {
+  Manager manager = on_floor(unmeasured());
+  const auto box = box_shape({0.2, 0.2, 0.2});
+  const std::vector<BodyId> pair{add(manager, box, at({0, 0, 0.1})), add(manager, box, at({2, 0, 0.1}))};
+  EXPECT_FALSE(manager.valid(GroupId{}));
+  const GroupId dissolved = manager.make_group(pair);
+  EXPECT_TRUE(manager.valid(dissolved));
+  manager.dissolve_group(dissolved);
+  EXPECT_FALSE(manager.valid(dissolved));
+  const GroupId group = manager.make_group(pair);
+  manager.remove_body(pair[0]);
+  EXPECT_TRUE(manager.valid(group));
+  manager.remove_body(pair[1]);
+  EXPECT_FALSE(manager.valid(group));
+}
+
 // Whoever freed them; also after a snapshot, in this manager or another.
 TEST(Groups, TheLeastFreeHandleIsGivenAgain) {
   const auto box = box_shape({0.2, 0.2, 0.2});
