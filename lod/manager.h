@@ -84,6 +84,9 @@ class Manager {
   /// follows when it changes; step() advances the caller's own bodies too. Static and kinematic geoms there,
   /// of whatever class, are ground of material 0 on every rung, and his dynamic bodies are met with impulses
   /// both ways; all of them may come, go and move between steps. World and space must outlive the manager.
+  /// Bodies of two managers in one world do not meet each other, and a step() of one of them would move the
+  /// full bodies of the other without their contacts: there all call before_world_step, then the world steps
+  /// once, then all call after_world_step.
   Manager(dxWorld* world, dxSpace* space, const ManagerSettings& settings = {});
   ~Manager();
   Manager(Manager&&) noexcept;
