@@ -69,13 +69,21 @@ class StateArchive {
     return std::size_t(wide);
   }
 
+  /// A value in a union: of any other, GCC 12 clears bytes of a member that is an array of classes of more
+  /// than 64 bytes, in place of what lies behind it.
+  template <class T>
+  union Cleared {
+    explicit Cleared(const T& given) : value(given) {}
+    ~Cleared() {}
+    T value;
+  };
   /// What lies between members goes as zeros, where the compiler can tell.
   template <PlainState T>
   void take(T& value) {
 #if __has_builtin(__builtin_clear_padding)
     if constexpr (!std::is_arithmetic_v<T>) {
       if (!reading_) {
-        T copy = value;
+        Cleared<T> copy(value);
         __builtin_clear_padding(&copy);
         return take_bytes(static_cast<void*>(&copy), sizeof(T));
       }

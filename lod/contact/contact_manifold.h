@@ -3,10 +3,12 @@
 // clipping, 1974), reduced to four points of wide support.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 
 #include "reference/geometry.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
@@ -18,6 +20,11 @@ struct ManifoldPoint {
 struct Manifold {
   std::array<ManifoldPoint, 4> points;
   int count = 0;
+
+  void archive(StateArchive& a) {
+    a(count);
+    for (std::size_t i = 0; i < std::min(std::size_t(count), points.size()); ++i) a(points[i]);
+  }
 };
 
 /// Of a touching feature, at most: a face of more corners loses little where it is one of so many.

@@ -21,6 +21,8 @@ namespace lodestone {
 struct CrowdContact {
   Participant first = Participant::ground(), second = Participant::ground();
   PairContact contact;
+
+  void archive(StateArchive& a) { a(first, second, contact); }
 };
 
 struct CrowdSettings {

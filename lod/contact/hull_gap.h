@@ -7,6 +7,7 @@
 #include <array>
 
 #include "reference/shape.h"
+#include "reference/state_archive.h"
 
 namespace lodestone {
 
@@ -41,6 +42,8 @@ struct HullGap {
   std::int32_t vertex_first = -1, vertex_second = -1;  ///< that bound it
   std::array<HullCorner, 3> corners{};                 ///< of the last search
   std::int32_t corner_count = 0;
+
+  void archive(StateArchive& a) { a(normal, gap, vertex_first, vertex_second, corners, corner_count); }
 };
 
 /// m: a gap that is as good as any wider one, since two bodies cannot close it.

@@ -27,6 +27,8 @@ struct PairContact {
   Vec3 normal = Vec3::UnitZ();  ///< from the second body into the first
   double gap = 0.0;             ///< m, the least; negative where they overlap
   Manifold manifold;            ///< one to four points that both bodies share, world
+
+  void archive(StateArchive& a) { a(normal, gap, manifold); }
 };
 
 inline constexpr double kTakenAlong = 0.02;  // over the lesser R: so far bodies take a contact along

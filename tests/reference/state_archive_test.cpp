@@ -84,6 +84,31 @@ TEST(StateArchive, HashedValuesGoInTheOrderOfTheirKeys) {
   EXPECT_NE(bytes_of(other), bytes_of(example()));
 }
 
+// The compiler's own means to clear what lies between members cleared half of a number there.
+TEST(StateArchive, WhatStandsBeforeAnArrayAndAGapIsKept) {
+  struct Place {
+    Vec3 at = Vec3::Zero();
+    double gap = 0.0;
+  };
+  struct Places {
+    std::array<Place, 4> places;
+    std::int32_t count = 0;
+  };
+  Places written;
+  for (std::size_t i = 0; i < 4; ++i)
+    written.places[i] = {Vec3(1.1, 2.2, 3.3) * double(i + 1), 4.4 * double(i + 1)};
+  written.count = 4;
+  StateArchive writer;
+  writer(written);
+  Places read;
+  StateArchive(writer.bytes(), {})(read);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(read.places[i].at, written.places[i].at) << i;
+    EXPECT_EQ(read.places[i].gap, written.places[i].gap) << i;
+  }
+  EXPECT_EQ(read.count, 4);
+}
+
 // Of a value that went nothing is left.
 TEST(StateArchive, AnEmptyOptionalIsWrittenAsNothing) {
   std::optional<Vec3> never, gone = Vec3(1, 2, 3), there = Vec3(4, 5, 6);

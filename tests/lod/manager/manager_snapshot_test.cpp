@@ -45,6 +45,38 @@ struct SavedWorld {
   std::vector<BodyId> bodies;
 };
 
+// Of one of its points half of a coordinate was lost.
+TEST(ManagerSnapshot, ContactsAreDrawnAsBefore) {
+  const auto cube = box_shape({0.3, 0.3, 0.3});
+  Manager manager = on_floor();
+  for (const double z : {0.15, 0.46}) add(manager, cube, testing::at({5, 3, z}), LevelChoice::support);
+  for (int i = 0; i < 8; ++i) manager.step(kFrame);
+  const auto drawn = [&] {
+    std::vector<Vec3> points;
+    manager.draw({.point = [&](const Vec3& at, DebugColor) { points.push_back(at); }}, {.bodies = false});
+    return points;
+  };
+  const std::vector<Vec3> before = drawn();
+  ASSERT_EQ(before.size(), 4U);
+  manager.restore(manager.snapshot());
+  EXPECT_EQ(drawn(), before);
+}
+
+// Half of what `support` cost was lost.
+TEST(ManagerSnapshot, TheReportIsThatOfItsStep) {
+  SavedWorld writer(unmeasured({.policy = WorkPolicy{500.0}})),
+      reader(unmeasured({.policy = WorkPolicy{500.0}}));
+  writer.fill();
+  writer.step(30);
+  const StepReport& expected = writer.manager.report();
+  ASSERT_GT(expected.cost[std::size_t(Rung::support)].work, 0.0);
+  reader.manager.restore(writer.manager.snapshot(), SavedWorld::shapes());
+  const StepReport& read = reader.manager.report();
+  for (std::size_t i = 0; i < kRungs; ++i) EXPECT_EQ(read.cost[i].work, expected.cost[i].work) << i;
+  EXPECT_EQ(read.contacts, expected.contacts);
+  EXPECT_EQ(read.step, expected.step);
+}
+
 // Taken at any time, read by a manager that is new, has other bodies, or goes back in time.
 TEST(ManagerSnapshot, WhoeverReadsItGoesOnToTheBit) {
   for (const int taken_after : {0, 1, 30, 200}) {
