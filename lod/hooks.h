@@ -15,7 +15,7 @@ namespace lodestone {
 enum class LogLevel : std::uint8_t {
   info,  ///< a signature is there; promotions that were put off
   /// Trouble that was met and mended: states recovered, contacts dropped, ODE's messages. Once, that there is
-  /// no viewpoint.
+  /// no viewpoint. A cache of signatures that cannot be used.
   warning,
   error,  ///< a signature that cannot be had, before the InputError that follows
 };

@@ -3,6 +3,8 @@
 
 #include <functional>
 #include <memory>
+#include <mutex>
+#include <string>
 #include <vector>
 
 #include "lod/hooks.h"
@@ -29,7 +31,8 @@ class SignatureStore {
   /// Of what was found; else the averages. Asks for nothing.
   const RungErrors& errors(const Shape& shape, const ContactLaw& law) const;
   std::int64_t loaded() const { return loaded_; }
-  /// Told of each signature that is there, or cannot be had.
+  /// Told, by ready() and find(), of each signature that is there, or cannot be had, and of what is in the
+  /// way of keeping it in the cache.
   void set_log(LogFunction log) { log_ = std::move(log); }
 
  private:
@@ -39,6 +42,19 @@ class SignatureStore {
     std::shared_ptr<const Signature> signature;
     FutureSignature pending;  // valid until it is in `signature`
   };
+  /// What is to be told once a call comes from the caller's thread.
+  class Warnings {
+   public:
+    void add(const std::string& text);
+    std::vector<std::string> take();
+
+   private:
+    std::mutex mutex_;
+    std::vector<std::string> texts_;
+  };
+  static std::unique_ptr<BackgroundSignatures> make_background(const SignatureFunction& source,
+                                                               const std::shared_ptr<Warnings>& warnings);
+  void tell_warnings() const;
   Entry* find_entry(const Shape& shape, const ContactLaw& law);
   std::shared_ptr<const Signature> take(const Shape& shape, Entry& entry);
   template <class Get>
@@ -52,7 +68,8 @@ class SignatureStore {
   LogFunction log_;
   std::vector<Entry> entries_;
   std::int64_t loaded_ = 0;
-  std::unique_ptr<BackgroundSignatures> background_;  // made when it is first needed
+  std::shared_ptr<Warnings> warnings_ = std::make_shared<Warnings>();  // the threads add to them
+  std::unique_ptr<BackgroundSignatures> background_;                   // made when it is first needed
 };
 
 }  // namespace lodestone

@@ -3,10 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
+#include <cstdlib>
 #include <latch>
+#include <thread>
 
 #include "reference/error.h"
+#include "reference/mesh/mesh.h"
 #include "tests/message_of.h"
+#include "tests/temporary_folder.h"
 
 namespace lodestone {
 namespace {
@@ -99,6 +104,30 @@ TEST(SignatureStore, WhatFailsIsAskedForAgainAndLogged) {
   EXPECT_EQ(log[0].first, LogLevel::error);
   EXPECT_EQ(log[0].second, "the signature of crate cannot be had: the disk is full");
   EXPECT_EQ(log[1].first, LogLevel::info);
+}
+
+// Measured at each start of a game, a cache that cannot be written would go unnoticed.
+TEST(SignatureStore, ACacheThatCannotBeUsedIsWarnedOf) {
+  const testing::TemporaryFolder folder;
+  const char* const before = std::getenv("XDG_CACHE_HOME");
+  const std::string kept = before ? before : "";
+  ::setenv("XDG_CACHE_HOME", folder.write("a file", "no folder").c_str(), 1);
+  std::vector<std::string> warnings;
+  {
+    SignatureStore store({}, SignatureTiming::in_background);
+    store.set_log([&](LogLevel level, std::string_view text) {
+      if (level == LogLevel::warning) warnings.emplace_back(text);
+    });
+    const Shape crate = make_shape("crate", make_box({0.2, 0.3, 0.4}));
+    for (int i = 0; i < 3000 && warnings.empty(); ++i) {
+      store.ready(crate, {});
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
+  before ? ::setenv("XDG_CACHE_HOME", kept.c_str(), 1) : ::unsetenv("XDG_CACHE_HOME");
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("the signature of crate is measured without the cache"), std::string::npos)
+      << warnings[0];
 }
 
 // In the background nobody waits until it is asked for outright.
