@@ -2,11 +2,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "lod/contact/hull_contacts.h"
 
 namespace lodestone {
+namespace {
+
+// Who is over a wall's near side is not within the wall, though its far side be nearer than a solid that is
+// let into it is deep.
+void drop_far_sides(std::vector<GroundNear>& near) {
+  constexpr double kAgainst = -0.7;  // cosine
+  const auto is_far_side = [&](const GroundNear& far) {
+    return far.height < 0.0 && std::ranges::any_of(near, [&](const GroundNear& side) {
+             return !side.at_edge && side.part == far.part && side.height >= 0.0 &&
+                    side.height < -far.height && side.normal.dot(far.normal) < kAgainst;
+           });
+  };
+  if (std::ranges::none_of(near, [](const GroundNear& n) { return n.height < 0.0; })) return;
+  thread_local std::vector<GroundNear> kept;
+  kept.clear();
+  std::ranges::remove_copy_if(near, std::back_inserter(kept), is_far_side);
+  near.assign(kept.begin(), kept.end());
+}
+
+}  // namespace
 
 void NearGround::begin_step() {
   planes_.clear(kinds_.size());
@@ -67,6 +88,7 @@ void NearGround::look_below(std::int64_t place, Look& found) const {
   const bool alone = scene_.is_alone(place), only_planes = alone && find_planes_of(place, found.faces);
   const PairBody hull{scene_.kind_of(place).shape.get(), center, spheres_.orientation(place)};
   if (!only_planes) find_ground_near(ground_, center, reach, 0.0, near, constants_.hulls ? &hull : nullptr);
+  drop_far_sides(near);
   const bool bridges = !alone && find_bridged_plane(place, near, found.faces);
   if (bridges) near.clear();
   for (const GroundNear& n : near) found.faces.push_back(n.plane(center));
@@ -207,6 +229,28 @@ bool NearGround::is_cornered(std::int64_t place) const {
 const NearGround::Carried* NearGround::carrying(std::int64_t place) const {
   const auto carried = std::ranges::lower_bound(carried_, place, {}, &Carried::place);
   return carried == carried_.end() || carried->place != place ? nullptr : &*carried;
+}
+
+Vec3 NearGround::above_faces(std::int64_t place, const Vec3& way) const {
+  const Vec3 center = spheres_.position(place);
+  Vec3 out = way;
+  for (const HalfSpace& plane : planes_of(place)) {
+    const double height = plane.height_of(center);
+    if (height < 0.0) continue;  // on its other side
+    const double gap = height - double(scene_.ground_height(place, -plane.normal)),
+                 into = -out.dot(plane.normal) - std::max(0.0, gap);
+    if (into > 0.0) out += into * plane.normal;
+  }
+  return out;
+}
+
+std::int32_t NearGround::nearest_face(std::int64_t place) const {
+  const Near& near = *find(place);
+  const auto begin = faces_.begin() + near.begin, end = faces_.begin() + near.end;
+  const Vec3 center = spheres_.position(place);
+  const auto nearest =
+      std::ranges::min_element(begin, end, {}, [&](const HalfSpace& face) { return face.height_of(center); });
+  return std::int32_t(ground_.planes().size()) + std::int32_t(nearest - faces_.begin());
 }
 
 // Who follows one that strikes the ground learns of it a step later, and presses it in by up to a step's way:

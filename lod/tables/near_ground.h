@@ -48,6 +48,10 @@ class NearGround {
       for (std::int32_t face = near->begin; face < near->end; ++face)
         visit(std::int32_t(ground_.planes().size()) + face);
   }
+  /// `way`, m, less what of it would bring the sphere's hull into the ground.
+  Vec3 above_faces(std::int64_t place, const Vec3& way) const;
+  /// The number of that which its centre is least above; of a sphere near ground that moves.
+  std::int32_t nearest_face(std::int64_t place) const;
   /// Whether planes stand for all that the hull of a sphere that is alone may meet of the ground's parts.
   bool is_even(std::int64_t place) const;
   /// Whether planes do not tell how it goes on.

@@ -34,7 +34,7 @@ StatisticalBody TablesLevel::guest_body(const Guest& guest) const {
       body.borne_up = !steady->isZero(0.0);
     }
     body.spin += step_.added_spin(i);
-    body.position += step_.push_out(i);
+    body.position += near_ground_.above_faces(i, step_.push_out(i));
   }
   if (spheres_.clip[std::size_t(i)] >= 0) body.motion = Motion::dynamic;
   return body;

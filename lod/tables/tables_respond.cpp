@@ -126,7 +126,10 @@ void TablesLevel::sort_ground() {
          carried != all_carried.end() && carried->place < end; ++carried) {
       std::uint8_t& state = step_.on_ground[std::size_t(carried->place)];
       const bool among_others = state >= std::uint8_t(GroundState::lies) && step_.touches(carried->place);
-      if (state == std::uint8_t(GroundState::free)) step_.gap[std::size_t(carried->place)] = kNoPlane;
+      if (state == std::uint8_t(GroundState::free)) {
+        step_.gap[std::size_t(carried->place)] = kNoPlane;
+        step_.plane[std::size_t(carried->place)] = near_ground_.nearest_face(carried->place);
+      }
       if (state != std::uint8_t(GroundState::stands) && !among_others)
         state = std::uint8_t(GroundState::near);  // by itself, in the frame of what carries it
     }
