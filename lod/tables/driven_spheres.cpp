@@ -142,7 +142,7 @@ double DrivenSpheres::find_way_to(const Driven& driven, const Vec3& way, std::in
     spheres_.set_position(other, start);
     const auto [normal, gap] = scene_.separate(self, other);
     const double closing = -relative.dot(normal);  // m, on all of the way
-    if (closing <= 0.0) break;
+    if (closing <= 0.0 || way.dot(normal) >= 0.0) break;  // stopped, it would be met all the same
     if (gap <= kTouching * radius) {
       if (i > 0 || closing > kDrivenFar * radius + gap) free = gone;
       break;
