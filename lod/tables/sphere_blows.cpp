@@ -44,6 +44,14 @@ bool SphereBlows::find() {
   return goes_on;
 }
 
+// m/s: what the ground is known to give one that bears others. Who takes part in a blow bears nobody in this
+// step, and would leave the ground by it.
+Vec3 SphereBlows::given_by_ground(std::uint32_t place) const {
+  const auto state = GroundState(step_.on_ground[place]);
+  if (state != GroundState::lies && state != GroundState::settles) return Vec3::Zero();
+  return double(step_.a[place].w) * near_ground_.plane(step_.plane[place]).normal;
+}
+
 // Contacts that strike or carry nothing, between spheres with the inertia under which an impulse at their
 // surface changes most (as in contact_loops.h).
 void SphereBlows::gather_open_contacts() {
@@ -62,7 +70,7 @@ void SphereBlows::gather_open_contacts() {
     const lane::Row &p = step_.p[place], &u = step_.u[place];
     const double radius = double(spheres_.radius[place]);
     SolverBody& body = bodies_.emplace_back();
-    body.velocity = Vec3(double(p.x), double(p.y), double(p.z));
+    body.velocity = Vec3(double(p.x), double(p.y), double(p.z)) - given_by_ground(place);
     body.angular_velocity = Vec3(double(u.x), double(u.y), double(u.z)) / radius;
     body.inverse_mass = spheres_.inverse_mass[place];
     body.inverse_inertia = body.inverse_mass * (double(u.w) - 1.0) / (radius * radius) * Mat3::Identity();

@@ -24,6 +24,7 @@ class SphereBlows {
 
  private:
   bool find();
+  Vec3 given_by_ground(std::uint32_t place) const;
   void gather_open_contacts();
   void give_to_bodies();
   void note_passed();
