@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "reference/random.h"
-#include "tests/lod/manager/manager_fixture.h"
+#include "tests/lod/manager/energy_gain.h"
 
 namespace lodestone::columns_test {
 namespace {
@@ -29,19 +29,7 @@ double gain_of(std::uint64_t seed) {
     bodies.push_back(manager.add_body(
         {.shape = shape, .state = at({0, 0, 1.5 + 0.45 * i}), .mass = mass, .level = LevelChoice::full}));
   }
-  const auto energy_of_all = [&] {
-    double sum = 0.0;
-    for (const BodyId body : bodies) sum += energy(manager, body);
-    return sum;
-  };
-  const double at_first = energy_of_all();
-  double least = at_first, gain = 0.0;
-  for (int i = 0; i < 180; ++i) {
-    manager.step(kFrame);
-    const double now = energy_of_all();
-    least = std::min(least, now), gain = std::max(gain, now - least);
-  }
-  return gain / at_first;
+  return greatest_gain(manager, bodies, 180);
 }
 
 // Of sixteen .018 in the mean and .087 at most; .093 and .23 where more than two bodies might have twice the
