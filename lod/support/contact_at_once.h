@@ -1,4 +1,4 @@
-// How an angular hull slides and rocks on planes: by the leapfrog rule of contact_steps.h, but in equal
+// How an angular hull slides and rocks on planes: by the leapfrog rule of contact_stepper.h, but in equal
 // steps, whatever strikes within one bouncing at once. What rolls over small sides would lose too much energy
 // by it; here nothing hangs on it, and it is cheaper.
 #pragma once
