@@ -4,8 +4,6 @@
 #include <array>
 #include <optional>
 
-#include "lod/contact/free_way.h"
-#include "lod/statistical/parting.h"
 #include "lod/statistical/turn_lanes.h"
 #include "lod/timing/stage_timer.h"
 
@@ -26,15 +24,6 @@ void advance(FullNeighbor& body, const BodyProperties& own, const Vec3& before, 
   body.state.position += body.state.velocity * time;
   body.state.orientation =
       (rotation_from_vector(body.state.angular_velocity * time) * body.state.orientation).normalized();
-}
-
-// `depth` over R.
-bool overlap_by(const ContactScene& scene, const CrowdContact& contact, double depth) {
-  const auto is_hull = [&](Participant p) {
-    return !p.is_statistical() || (!scene.body(p).is_sphere() && scene.body(p).eased == 0.0f);
-  };
-  const double radius = std::min(scene.shape(contact.first).radius, scene.shape(contact.second).radius);
-  return contact.contact.gap < -depth * radius && is_hull(contact.first) && is_hull(contact.second);
 }
 
 // From the first contact of the body in `slot` on, which has one.
@@ -176,24 +165,6 @@ void NearBodies::find_touching(const Step& step, Pace pace, int substep) {
   meet_woken(step, pace, substep);
 }
 
-// Whom they are near, with those that were driven away.
-void NearBodies::look_up_woken(const Step& step) {
-  pairs_.add(step.scene, step.search.find_woken(step.dt, step.support, full_, woken_));
-  for (const Participant p : woken_) note_ball(step, p);
-}
-
-// They may touch others, who wake, and so on.
-void NearBodies::meet_woken(const Step& step, Pace pace, int substep) {
-  const double time = step.dt / pace;
-  for (; !woken_.empty(); wake_touched(step, pace)) {
-    known_movers_ = movers_;
-    choose_movers(step.support, pace);
-    look_up_woken(step);
-    pairs_.find_more_contacts(step.scene, time, near_, pace);
-    solids_.find_more(step.scene, movers_, known_movers_, substep * time, time);
-  }
-}
-
 void NearBodies::choose_movers(const SupportLevel& support, Pace pace) {
   movers_.clear();
   for (const std::int32_t index : support.awake_with_guests())
@@ -288,74 +259,6 @@ void NearBodies::move_alone(SupportLevel& support, std::span<Guest> guests, std:
                            around, time, tables_);
 }
 
-void NearBodies::keep_awake(const Step& step, Participant p) {
-  if (p.is_full()) {
-    step.scene.neighbor(p).carried = true;
-    return;
-  }
-  step.scene.body(p).quiet_time = 0.0f;
-  if (step.support.is_guest(std::int32_t(p.index())))
-    step.guests[p.index() - std::size_t(step.support.size())].carried = true;
-}
-
-void NearBodies::wake(const Step& step, Participant p, Pace pace) {
-  woken_.push_back(p);
-  if (p.is_full()) {
-    step.scene.neighbor(p).asleep = false;
-    return;
-  }
-  step.support.wake(int(p.index()));
-  pairs_.clear_turning(p);
-  near_.set_pace(p, pace);
-}
-
-void NearBodies::wake_touched(const Step& step, Pace pace) {
-  const ContactScene& scene = step.scene;
-  woken_.clear();
-  carried_.find(scene, pairs_.contacts(), solids_.contacts(), step.full_contacts);
-  // Two hulls, one of which was put where the other is, are to part; no sleeper is to hold them together.
-  inside_.clear();
-  const auto is_pinned = [&](Participant p) { return p.is_statistical() && scene.body(p).pinned; };
-  const auto is_placed = [&](Participant p) { return p.is_statistical() && scene.body(p).placed > 0.0f; };
-  for (const CrowdContact& c : pairs_.contacts())
-    if (overlap_by(scene, c, is_placed(c.first) || is_placed(c.second) ? kBroughtOverlap : kWakingOverlap) &&
-        !(is_pinned(c.first) && is_pinned(c.second)))
-      inside_.insert(inside_.end(), {c.first, c.second});
-  constexpr double kPressed = 0.25;  // who lies in the way of one that is put where others are
-  const auto are_to_part = [&](const CrowdContact& c) {
-    const double least =
-        is_placed(c.first) || is_placed(c.second) ? kPressed * kBroughtOverlap : kBroughtOverlap;
-    return !inside_.empty() && overlap_by(scene, c, least) &&
-           (std::ranges::find(inside_, c.first) != inside_.end() ||
-            std::ranges::find(inside_, c.second) != inside_.end());
-  };
-  // Nor are those that came from another rung with overlaps, which they would else keep for good.
-  const auto is_parting = [&](Participant p) {
-    return p.is_statistical() && !scene.asleep(p) && !scene.body(p).is_sphere() &&
-           scene.body(p).eased == kEasedTime && scene.body(p).quiet_time == 0.0f;
-  };
-  for (const CrowdContact& c : pairs_.contacts())
-    for (const auto& [touched, other] : {std::pair{c.first, c.second}, std::pair{c.second, c.first}}) {
-      const bool is_carried = carried_.contains(touched), carried = is_carried || is_parting(other);
-      if (carried) keep_awake(step, touched);
-      if (is_carried && touched.is_statistical()) scene.body(touched).carried = true;
-      if (!scene.asleep(touched)) continue;
-      Vec3 velocity = pairs_.point_velocity(scene, other, c.contact.manifold.points[0].point);
-      if (other.is_statistical()) velocity += step.dt * scene.pushed(other);  // as it will be
-      const double speed = velocity.norm();
-      if (carried || speed > rest_law_.wake_speed(scene.shape(touched).radius) || are_to_part(c))
-        wake(step, touched, pace);
-    }
-  blows_.find(scene, pairs_, rest_law_, struck_);
-  for (const Participant p : struck_) wake(step, p, pace);
-  if (!carried_.none())
-    for (const SolidContact& c : solids_.contacts())
-      if (c.part->moves()) {
-        keep_awake(step, Participant::statistical(std::size_t(c.slot)));
-        scene.body(Participant::statistical(std::size_t(c.slot))).carried = true;
-      }
-}
-
 // Who sleeps holds still; where it would not, it wakes, and what touches it is solved once more.
 void NearBodies::move_crowded(const Step& step, Pace pace, int substep) {
   constexpr int kMostRounds = 8;
@@ -394,55 +297,6 @@ void NearBodies::move_crowded(const Step& step, Pace pace, int substep) {
     if (const StatisticalBody& body = scene.bodies[std::size_t(index)];
         body.is_solved_in_crowd() && body.motion != Motion::asleep && !step.support.is_guest(index))
       step.support.update_quiet(index, solids_.faces().of(index), time, step.tally);
-}
-
-void NearBodies::note_ball(const Step& step, Participant p) {
-  if (!p.is_statistical()) return;
-  const StatisticalBody& body = step.scene.body(p);
-  balls_[p.index()] =
-      step.search.ball_of(body.position, body.velocity, kinds_[body.kind].shape->radius, step.dt);
-}
-
-// Whom others struck may pass who was out of its reach when near pairs were looked for: `left` s are.
-void NearBodies::find_driven(const Step& step, double left) {
-  constexpr double kFar = 0.25;  // over the inner radius: whoever goes less far beyond passes nothing
-  if (pairs_.contacts().empty() || left < 1e-6 * step.dt) return;
-  for (const std::int32_t index : movers_) {
-    const StatisticalBody& body = step.scene.bodies[std::size_t(index)];
-    if (!body.crowded || body.motion == Motion::asleep) continue;
-    const Shape& shape = *kinds_[body.kind].shape;
-    const NearSearch::Ball& ball = balls_[std::size_t(index)];
-    const double most = double(ball.reach) - shape.radius + kFar * shape.inner_radius;
-    if ((body.position + left * body.velocity - ball.center).squaredNorm() > most * most)
-      driven_.push_back(Participant::statistical(std::size_t(index)));
-  }
-}
-
-// Of those that touch others.
-void NearBodies::note_places(const Step& step) {
-  places_.clear();
-  if (!ground_.has_parts()) return;
-  for (const std::int32_t index : movers_) {
-    const StatisticalBody& body = step.scene.bodies[std::size_t(index)];
-    if (body.crowded && body.motion != Motion::asleep &&
-        meets_solids(step.scene.world.properties_of(body.owner)))
-      places_.emplace_back(index, body.position);
-  }
-}
-
-// Whom others drive did not close in on the ground when contacts were found, and may be behind it when they
-// are next. It stops there, and strikes it in the next substep.
-void NearBodies::stop_before_unseen_ground(const Step& step) {
-  constexpr double kFar = 0.25;  // over the inner radius: whoever goes less passes nothing
-  for (const auto& [index, from] : places_) {
-    StatisticalBody& body = step.scene.bodies[std::size_t(index)];
-    const Shape& shape = *kinds_[body.kind].shape;
-    const Vec3 way = body.position - from;
-    if (way.norm() > kFar * shape.inner_radius)
-      body.position =
-          from +
-          find_free_way({ground_, step.scene.world.properties_of(body.owner)}, body, shape, from, way) * way;
-  }
 }
 
 // Of the movers those that are solved with others.

@@ -1,6 +1,9 @@
 // Stage 3d: bodies of `support` and full ones, and those of `tables` near them, which are guests here for a
 // step. Who may touch another moves in substeps: contacts found, all of them solved at once, the bodies
 // moved; the others move by themselves.
+//
+// Its files: near_bodies.cpp has the sequence of a step; near_bodies_waking.cpp which sleepers wake in it;
+// near_bodies_driven.cpp those that others drive too fast for what was found before.
 #pragma once
 
 #include <span>
@@ -82,20 +85,27 @@ class NearBodies {
   void move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time,
                   ContactTally& tally, const Quat* turned) const;
   void move_on_solids(const Step& step, double time);
-  static void keep_awake(const Step& step, Participant p);
-  void wake(const Step& step, Participant p, Pace pace);
-  void wake_touched(const Step& step, Pace pace);
-  void look_up_woken(const Step& step);
-  void meet_woken(const Step& step, Pace pace, int substep);
   void move_crowded(const Step& step, Pace pace, int substep);
-  void note_ball(const Step& step, Participant p);
-  void find_driven(const Step& step, double left);
-  void note_places(const Step& step);
-  void stop_before_unseen_ground(const Step& step);
   void take_crowded(const Step& step);
   void move_full_on(double time, int substep);
   void give_back(std::span<FullNeighbor> neighbors) const;
   void find_carriers(const ContactScene& scene);
+
+  // Waking.
+  static void keep_awake(const Step& step, Participant p);
+  void wake(const Step& step, Participant p, Pace pace);
+  void wake_touched(const Step& step, Pace pace);
+  void find_inside(const ContactScene& scene);
+  bool are_to_part(const ContactScene& scene, const CrowdContact& contact) const;
+  void keep_awake_on_moving_ground(const Step& step);
+  void look_up_woken(const Step& step);
+  void meet_woken(const Step& step, Pace pace, int substep);
+
+  // Those that others drive.
+  void note_ball(const Step& step, Participant p);
+  void find_driven(const Step& step, double left);
+  void note_places(const Step& step);
+  void stop_before_unseen_ground(const Step& step);
 
   StatisticalSettings settings_;
   const Ground& ground_;

@@ -1,6 +1,11 @@
-// Stage 3b: who is near whom, on all rungs. One set of cells holds the balls of all that move: awake spheres,
-// awake bodies of `support`, full ones; those that sleep are looked up in their store. Pairs of spheres stay
-// with the tables level; all others are near pairs of hulls, and spheres among them become guests there.
+// Stage 3b, the broad phase: who is near whom, on all rungs. One set of cells holds the balls of all that
+// move: awake spheres, awake bodies of `support`, full ones; those that sleep are looked up in their store.
+// Pairs of spheres stay with the tables level; all others are near pairs of hulls, and spheres among them
+// become guests there.
+//
+// Its files: near_search.cpp has the cells and the pairs of all that moves; near_search_sleepers.cpp those
+// with sleepers; near_search_rooms.cpp the steps in which nobody can be near anybody; near_search_woken.cpp
+// those who wake within the step.
 #pragma once
 
 #include <algorithm>
@@ -77,7 +82,8 @@ class NearSearch {
   }
 
  private:
-  static constexpr double kBall = 1.02;  // over R: of the ball about a hull
+  static constexpr double kBall = 1.02;   // over R: of the ball about a hull
+  static constexpr int kMostShares = 16;  // into which the work of filling the cells is divided
 
   /// A body by its place, which is how they are put in order.
   struct Placed {
@@ -93,6 +99,10 @@ class NearSearch {
   void add_hull_balls(double dt, std::span<const StatisticalBody> bodies, const SupportLevel& support,
                       std::span<const FullNeighbor> neighbors);
   void add_ball(const Ball& ball);
+  void fill_cells(std::span<const double> x, std::span<const double> y, std::span<const double> z,
+                  std::span<const float> reach, const CellGrid::Lent& lent);
+  void fill_mixed(double dt, const TablesLevel& tables, const SupportLevel& support,
+                  std::span<const FullNeighbor> neighbors);
   void take_movers(const SupportLevel& support);
   void sort_movers(std::span<const StatisticalBody> bodies);
   void sort_by_place(std::span<const StatisticalBody> bodies, std::vector<std::int32_t>& indices) const;
@@ -119,18 +129,31 @@ class NearSearch {
   Participant participant(std::uint32_t ball, const TablesLevel& tables);
   Participant guest(std::int32_t slot);
   void forget_guests();
-  void find_still_pairs(const SupportLevel& support, std::span<const FullNeighbor> neighbors,
-                        const TablesLevel& tables);
+  void find_sleeper_pairs(const SupportLevel& support, std::span<const FullNeighbor> neighbors,
+                          const TablesLevel& tables);
+  /// Calls `found` for the sleepers of `support` whose balls meet this one.
   template <class Found>
-  void each_still_hull(const Vec3& center, double reach, const SupportLevel& support,
-                       const Found& found) const;
+  void each_sleeping_hull(const Vec3& center, double reach, const SupportLevel& support,
+                          const Found& found) const {
+    const std::span<const StatisticalBody> bodies = support.bodies();
+    sleepers_.of(StatisticalModel::support).find_near(center, reach, [&](std::uint32_t slot) {
+      const double limit = reach + kBall * support.kind_of(bodies[slot]).shape->radius;
+      if ((bodies[slot].position - center).squaredNorm() < limit * limit) found(std::int32_t(slot));
+    });
+  }
+  /// The same for the sleepers of `tables`.
   template <class Found>
-  void each_still_sphere(const Vec3& center, double reach, const TablesLevel& tables,
-                         const Found& found) const;
-  bool add_known_still_pairs(std::size_t ball, const SupportLevel& support);
-  void add_still_pairs(Participant self, std::span<const StatisticalBody> bodies);
-  void find_woken_pairs(const TablesLevel& tables);
-  void find_still_hulls_near_spheres(const SupportLevel& support, const TablesLevel& tables);
+  void each_sleeping_sphere(const Vec3& center, double reach, const TablesLevel& tables,
+                            const Found& found) const {
+    sleepers_.of(StatisticalModel::tables).find_near(center, reach, [&](std::uint32_t slot) {
+      const double limit = reach + kBall * tables.radius(int(slot));
+      if ((tables.position(int(slot)) - center).squaredNorm() < limit * limit) found(std::int32_t(slot));
+    });
+  }
+  bool add_known_sleeper_pairs(std::size_t ball, const SupportLevel& support);
+  void add_sleeper_pairs(Participant self, std::span<const StatisticalBody> bodies);
+  void find_pairs_of_woken_spheres(const TablesLevel& tables);
+  void find_sleeping_hulls_near_spheres(const SupportLevel& support, const TablesLevel& tables);
 
   Vec3 gravity_;
   const OwnProperties* properties_;
@@ -161,7 +184,7 @@ class NearSearch {
   std::vector<Guest> guests_;
   std::vector<std::int32_t> guest_of_slot_;  // of spheres; −1: none
   std::size_t own_bodies_ = 0;               // of `support`: guests follow these
-  std::vector<std::int32_t> still_near_;
+  std::vector<std::int32_t> sleepers_near_;  // slots, of the body at hand
 
   // Woken in this step, all of them, and their balls.
   std::vector<Participant> woken_;
