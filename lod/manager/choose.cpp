@@ -135,6 +135,7 @@ void Choose::look_at_nearest(StepReport& report) {
   }
 }
 
+// Asks the policy about a body, unless its answer is known.
 void Choose::look_at(std::uint32_t body, StepReport& report) {
   if (!levels_.bodies.alive(body)) return;
   BodyLevel& level = levels_.bodies.level(body);
@@ -142,67 +143,97 @@ void Choose::look_at(std::uint32_t body, StepReport& report) {
   const bool unseen = level.looked_at < report.step - 1;  // it slept
   level.looked_at = report.step;
   ++report.counters.levels_considered;
-  const GroupId group = groups_.of(body);
-  if (group)
-    for (const std::uint32_t member : groups_.members(group)) look_at(member, report);
-  // What it has goes with it from one statistical rung to the other; a step waits for no other.
-  const bool may_need_signature = open_to(level, false).has(Rung::tables) && !levels_.own_signature(body);
-  if (level.rung == Rung::full || level.newcomer || may_need_signature) note_waiting(body);
-  if (!model_ && level.tables_open < 0 && !level.waits_for_signature &&
-      open_to(level, false).has(Rung::tables))
-    ask_for_tables(body);
-  const Activity does = budgeted() || policy_.contact_groups_together ? activity(body) : Activity::alone;
-  const bool pinned = level.rung == Rung::full && !level.newcomer && groups_.pinned(body);
-  const RungSet may_be = open_to(level, does == Activity::asleep);
-  const bool carries = level.own_properties && !group && may_be.has(Rung::full) && carriers_.contains(body);
-  const RungSet open = pinned || carries ? RungSet{Rung::full} : may_be;
-  if (does == Activity::asleep || unseen) level.woke_at = report.step;
-  const bool held = pinned && does != Activity::asleep;
-  const float mesh = budgeted() ? mesh_weight(*levels_.bodies.shape(body)) : 0.0f;
-  if (budgeted() && held)
-    count_held(does, costs_->full_share(mesh));
-  else if (budgeted())
-    count(level.newcomer ? open.lowest() : level.rung, does, arrives(level, does), mesh, 1.0);
-  const bool settled = open.one() && open.has(level.rung) && !level.newcomer && level.rung != Rung::full;
-  if (settled && !budgeted() && !group) {
+  const bool grouped = bool(groups_.of(body));
+  if (grouped)
+    for (const std::uint32_t member : groups_.members(groups_.of(body))) look_at(member, report);
+  ask_for_signature(body, level);
+  const Circumstances is = find_circumstances(body, level);
+  if (is.asleep() || unseen) level.woke_at = report.step;
+  if (budgeted()) count_present(level, is);
+  const bool settled =
+      is.open.one() && is.open.has(level.rung) && !level.newcomer && level.rung != Rung::full;
+  if (settled && !budgeted() && !grouped) {
     level.reason = Rule::forced;
     return;
   }
-  LevelCandidate candidate = make_candidate(body, open, does == Activity::asleep);
-  if (pinned) candidate.decided_by = Rule::joined;
-  if (carries) candidate.decided_by = Rule::carries_full;
-  candidate.mesh = mesh;
-  // A sleeper keeps its rung by what it would save awake: in turn with those around it, that would wake each
-  // other as they go up and down.
-  const bool keeps = by_error() && does == Activity::asleep && candidate.present() > open.lowest();
-  if (by_error()) predict_errors(body, keeps ? Activity::crowded : does, candidate);
-  if (budgeted()) candidate.cost = costs_->cost_of(does, costs_->full_share(mesh));
-  if (budgeted() && open.one() && open.has(Rung::full) && !level.newcomer)
-    candidate.cost[std::size_t(Rung::full)] =
-        float(costs_->cost_of_forced_full(does, held, costs_->full_share(mesh)));
-  if (does == Activity::asleep && !open.has(Rung::tables))
-    candidate.cost[std::size_t(Rung::support)] = 0.0f;  // not all of them are looked at
-  if (budgeted() && does == Activity::asleep && level.rung == Rung::support && open.has(Rung::tables))
-    support_sleepers_.push_back(body);
-  const auto at = std::size_t(level.rung);
-  if (keeps)
-    candidate.passing = candidate.cost[at] - costs_->cost_of(Activity::crowded, costs_->full_share(mesh))[at];
-  if (budgeted() && !held && arrives(level, does)) {
-    candidate.passing = float(costs_->cost_of_arriving(level.rung) *
-                              (level.rung == Rung::full ? costs_->full_share(mesh) : 1.0));
-    candidate.cost[at] += candidate.passing;
-  }
-  const bool limited = policy_.most_full < kUnlimited || policy_.most_support < kUnlimited;
-  const bool may_hit = candidate.ahead.squaredNorm() > candidate.radius * candidate.radius;
-  if (limits_ && !level.newcomer && !limited && !may_hit && !group && !policy_.contact_groups_together &&
-      stays_put(candidate, views_, *limits_)) {
+  LevelCandidate candidate = make_candidate(body, is.open, is.asleep());
+  if (is.pinned) candidate.decided_by = Rule::joined;
+  if (is.carries) candidate.decided_by = Rule::carries_full;
+  price(body, level, is, candidate);
+  if (!grouped && stays_as_it_is(level, candidate)) {
     level.reason = reason_for_rung(*limits_, candidate);
     put_far(body, candidate);
     return;
   }
   asked_.push_back(body);
   candidates_.push_back(candidate);
-  activities_.push_back(does);
+  activities_.push_back(is.does);
+}
+
+// What a body has of signatures goes with it from one statistical rung to the other; a step waits for no
+// other.
+void Choose::ask_for_signature(std::uint32_t body, const BodyLevel& level) {
+  const bool may_be_at_tables = open_to(level, false).has(Rung::tables);
+  const bool may_need_signature = may_be_at_tables && !levels_.own_signature(body);
+  if (level.rung == Rung::full || level.newcomer || may_need_signature) note_waiting(body);
+  if (!model_ && level.tables_open < 0 && !level.waits_for_signature && may_be_at_tables)
+    ask_for_tables(body);
+}
+
+Choose::Circumstances Choose::find_circumstances(std::uint32_t body, const BodyLevel& level) {
+  Circumstances is;
+  is.does = budgeted() || policy_.contact_groups_together ? activity(body) : Activity::alone;
+  is.pinned = level.rung == Rung::full && !level.newcomer && groups_.pinned(body);
+  is.held = is.pinned && !is.asleep();
+  is.open = open_to(level, is.asleep());
+  is.carries =
+      level.own_properties && !groups_.of(body) && is.open.has(Rung::full) && carriers_.contains(body);
+  if (is.pinned || is.carries) is.open = RungSet{Rung::full};
+  is.mesh = budgeted() ? mesh_weight(*levels_.bodies.shape(body)) : 0.0f;
+  return is;
+}
+
+// On the rung that it has before the decision.
+void Choose::count_present(const BodyLevel& level, const Circumstances& is) {
+  if (is.held)
+    count_held(is.does, costs_->full_share(is.mesh));
+  else
+    count(level.newcomer ? is.open.lowest() : level.rung, is.does, arrives(level, is.does), is.mesh, 1.0);
+}
+
+// What the candidate costs on each rung, and by how much it is wrong there, as far as the policy asks.
+void Choose::price(std::uint32_t body, const BodyLevel& level, const Circumstances& is,
+                   LevelCandidate& candidate) {
+  candidate.mesh = is.mesh;
+  // A sleeper keeps its rung by what it would save awake: in turn with those around it, that would wake each
+  // other as they go up and down.
+  const bool keeps = by_error() && is.asleep() && candidate.present() > is.open.lowest();
+  if (by_error()) predict_errors(body, keeps ? Activity::crowded : is.does, candidate);
+  if (budgeted()) candidate.cost = costs_->cost_of(is.does, costs_->full_share(is.mesh));
+  if (budgeted() && is.open.one() && is.open.has(Rung::full) && !level.newcomer)
+    candidate.cost[std::size_t(Rung::full)] =
+        float(costs_->cost_of_forced_full(is.does, is.held, costs_->full_share(is.mesh)));
+  if (is.asleep() && !is.open.has(Rung::tables))
+    candidate.cost[std::size_t(Rung::support)] = 0.0f;  // not all of them are looked at
+  if (budgeted() && is.asleep() && level.rung == Rung::support && is.open.has(Rung::tables))
+    support_sleepers_.push_back(body);
+  const auto at = std::size_t(level.rung);
+  if (keeps)
+    candidate.passing =
+        candidate.cost[at] - costs_->cost_of(Activity::crowded, costs_->full_share(is.mesh))[at];
+  if (budgeted() && !is.held && arrives(level, is.does)) {
+    candidate.passing = float(costs_->cost_of_arriving(level.rung) *
+                              (level.rung == Rung::full ? costs_->full_share(is.mesh) : 1.0));
+    candidate.cost[at] += candidate.passing;
+  }
+}
+
+// Whether a policy of distances or sizes surely leaves it where it is, so that it need not be asked.
+bool Choose::stays_as_it_is(const BodyLevel& level, const LevelCandidate& candidate) const {
+  const bool limited = policy_.most_full < kUnlimited || policy_.most_support < kUnlimited;
+  const bool may_hit = candidate.ahead.squaredNorm() > candidate.radius * candidate.radius;
+  return limits_ && !level.newcomer && !limited && !may_hit && !policy_.contact_groups_together &&
+         stays_put(candidate, views_, *limits_);
 }
 
 bool Choose::arrives(const BodyLevel& level, Activity does) const {

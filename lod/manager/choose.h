@@ -88,12 +88,28 @@ class Choose {
   void archive(StateArchive& a);
 
  private:
+  /// What a body's rung depends on, besides where it is.
+  struct Circumstances {
+    Activity does = Activity::alone;
+    RungSet open = kEveryRung;  // the rungs that it may be on
+    bool pinned = false;        // full as long as joints hold it there
+    bool held = false;          // pinned, and awake
+    bool carries = false;       // a kinematic body that touches an awake full one
+    float mesh = 0.0f;          // weight of its mesh in pairs of full bodies, under a budget
+    bool asleep() const { return does == Activity::asleep; }
+  };
+
   bool budgeted() const { return !limits_; }
   bool by_error() const { return std::holds_alternative<ErrorBudgetPolicy>(policy_.policy); }
   bool sees_places() const;
   void look_at_those_concerned(StepReport& report);
   void look_at(std::uint32_t body, StepReport& report);
   void look_at_nearest(StepReport& report);
+  void ask_for_signature(std::uint32_t body, const BodyLevel& level);
+  Circumstances find_circumstances(std::uint32_t body, const BodyLevel& level);
+  void count_present(const BodyLevel& level, const Circumstances& is);
+  void price(std::uint32_t body, const BodyLevel& level, const Circumstances& is, LevelCandidate& candidate);
+  bool stays_as_it_is(const BodyLevel& level, const LevelCandidate& candidate) const;
   RungSet open_to(const BodyLevel& level, bool asleep) const;
   RungSet open_by_choice(const BodyLevel& level, bool asleep) const;
   LevelCandidate make_candidate(std::uint32_t body, RungSet open, bool asleep);

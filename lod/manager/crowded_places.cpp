@@ -12,11 +12,11 @@ constexpr double kThinnest = 1e-3;         // of a body's radius: the ball insid
 constexpr std::size_t kMembersSeen = 256;  // of the full level, the last
 constexpr int kMostAtAPlace = 8;           // crowds that do not meet each other
 constexpr std::int64_t kStepsBetween = 8;  // steps after which one more comes
-// How full a room (room_of) is: the volume of the bodies whose centres are in it over its own. It is crowded
-// where those that wait come to more than kCrowded, which touching cubes stay below however they lie in the
-// rooms; or where some that wait overlap for certain, come to more than kFilled, and with those that are
-// there to more than kDense. Then bodies come in up to kFilled. Two overlap for certain where they are nearer
-// than kOverlapping times the sum of the radii of the balls inside them.
+// How full a room (room_of) is: the volume of the bodies whose centres are in it over its own. A room is
+// crowded where those that wait fill it by more than kCrowded (touching cubes fill it less, however they
+// lie). It is crowded, too, where some that wait overlap for certain, fill it by more than kFilled, and by
+// more than kDense together with those that are there. Then bodies are let in up to kFilled. Two overlap for
+// certain where they are nearer than kOverlapping times the sum of the radii of the balls inside them.
 constexpr double kCrowded = 8.0, kDense = 2.0, kFilled = 1.0, kOverlapping = 0.9;
 
 // A cell of a grid, whose width (m) is a power of two.
@@ -58,16 +58,16 @@ double volume_of(const Place& room) { return std::ldexp(1.0, 3 * room.size); }  
 
 // Where more newcomers are than may take part at once.
 struct Crowd {
-  Vec3 middle;         // m, of the first of them:
-  const Shape* shape;  // whoever takes part within its radius is in their way
-  std::uint32_t first;
-  int there;
+  Vec3 middle;          // m, position of the first of them
+  const Shape* shape;   // of the first: bodies within its radius are in their way
+  std::uint32_t first;  // index of that body
+  int there;            // at first those that wait, later those that are in their way
 };
 
 using Crowds = std::unordered_map<Place, Crowd, HashOfPlace>;
 
 struct Room {
-  std::uint32_t first = 0;            // of those that wait
+  std::uint32_t first = 0;            // index of the first of those that wait
   double waiting = 0.0, there = 0.0;  // m³ of bodies
   bool overlap = false;               // of those that wait
   bool may_be_crowded(const Place& place) const {
@@ -139,83 +139,115 @@ bool waits_in(const BodyTable& bodies, const Place& room) {
   return false;
 }
 
+// Decides which newcomers wait, from those that wait and those that are there.
+class NewcomerQueue {
+ public:
+  explicit NewcomerQueue(const Levels& levels) : levels_(levels), bodies_(levels.bodies) {}
+
+  /// Sorts those that wait into crowds, by the place of each, and rooms. False: there are not too many
+  /// anywhere.
+  bool gather() {
+    each_newcomer([&](std::uint32_t body, const Vec3& position, const Shape& shape) {
+      const auto room = find_or_begin(rooms_, room_of(position, shape), Room{.first = body});
+      if (room != rooms_.end()) room->second.waiting += shape.volume;
+      const auto crowd = find_or_begin(crowds_, place_of(position, shape), Crowd{position, &shape, body, 0});
+      if (crowd != crowds_.end()) ++crowd->second.there;
+    });
+    each_newcomer([&](std::uint32_t body, const Vec3& position, const Shape& shape) {
+      const Place its = room_of(position, shape);
+      const auto at = find(rooms_, its, body);
+      if (at == rooms_.end()) return;
+      if (Room& room = at->second; !room.overlap && room.waiting > kFilled * volume_of(its))
+        room.overlap = overlaps_another(crowds_, position, shape);
+    });
+    std::erase_if(crowds_, [](const auto& crowd) { return crowd.second.there <= kBodiesOfAPlace; });
+    std::erase_if(rooms_, [](const auto& room) { return !room.second.may_be_crowded(room.first); });
+    return !crowds_.empty() || !rooms_.empty();
+  }
+
+  /// Counts the bodies that are at these crowds and rooms already.
+  void count_those_there() {
+    CrowdGrid grid;
+    for (auto& [place, crowd] : crowds_) crowd.there = 0, grid.add(crowd);
+    const auto meets = [this](std::uint32_t first, std::uint32_t body) { return is_met(first, body); };
+    for (std::uint32_t body = 0; body < bodies_.indices(); ++body) {
+      if (!counts(body) || bodies_.level(body).newcomer) continue;
+      const Vec3 position = levels_.state(body).position;
+      const Place its = room_of(position, *bodies_.shape(body));
+      grid.count(body, position, its, meets);
+      if (const auto room = find(rooms_, its, body); room != rooms_.end())
+        room->second.there += bodies_.shape(body)->volume;
+    }
+    std::erase_if(rooms_, [](const auto& room) { return !room.second.is_crowded(room.first); });
+  }
+
+  /// Lets newcomers in, in order, as long as there is room; every few steps one more at each crowded place.
+  /// Returns those that wait on, ascending.
+  std::vector<std::uint32_t> let_in() {
+    const bool more = levels_.now % kStepsBetween == 0;
+    for (auto& [place, crowd] : crowds_) crowd.there = std::min(crowd.there, kBodiesOfAPlace) - more;
+    for (auto& [place, room] : rooms_)
+      room.there =
+          std::min(room.there, kFilled * (more ? std::nextafter(volume_of(place), 0.0) : volume_of(place)));
+    std::vector<std::uint32_t> waiting;
+    each_newcomer([&](std::uint32_t body, const Vec3& position, const Shape& shape) {
+      const auto crowd = find(crowds_, place_of(position, shape), body);
+      const auto room = find(rooms_, room_of(position, shape), body);
+      const bool waits = (crowd != crowds_.end() && crowd->second.there >= kBodiesOfAPlace) ||
+                         (room != rooms_.end() && room->second.there >= kFilled * volume_of(room->first));
+      if (waits) return waiting.push_back(body);
+      if (crowd != crowds_.end()) ++crowd->second.there;
+      if (room != rooms_.end()) room->second.there += shape.volume;
+    });
+    std::ranges::sort(waiting);
+    return waiting;
+  }
+
+ private:
+  bool counts(std::uint32_t body) const {
+    return bodies_.alive(body) && meets_its_kind(bodies_.properties(body));
+  }
+  template <class Visit>
+  void each_newcomer(const Visit& visit) const {
+    const auto& newcomers = bodies_.newcomers();
+    for (std::size_t i = 0; i < newcomers.size(); ++i)
+      if (const std::uint32_t body = newcomers[i].index; bodies_.waits_at(i) && counts(body))
+        visit(body, levels_.state(body).position, *bodies_.shape(body));
+  }
+  // Who meets the first at a place is of its crowd; who does not begins another there. Beyond kMostAtAPlace
+  // crowds nobody is asked.
+  bool is_met(std::uint32_t first, std::uint32_t body) const {
+    const auto& may_pair = levels_.statistical_settings.pair_filter;
+    return first == body || !may_pair || may_pair(first, body);
+  }
+  template <class Map>
+  typename Map::iterator find(Map& map, Place place, std::uint32_t body) const {
+    for (; place.which < kMostAtAPlace; ++place.which)
+      if (const auto at = map.find(place); at != map.end() && is_met(at->second.first, body)) return at;
+    return map.end();
+  }
+  template <class Map>
+  typename Map::iterator find_or_begin(Map& map, Place place, const typename Map::mapped_type& fresh) const {
+    for (; place.which < kMostAtAPlace; ++place.which)
+      if (const auto at = map.try_emplace(place, fresh).first; is_met(at->second.first, fresh.first))
+        return at;
+    return map.end();
+  }
+
+  const Levels& levels_;
+  const BodyTable& bodies_;
+  Crowds crowds_;
+  std::unordered_map<Place, Room, HashOfPlace> rooms_;
+};
+
 }  // namespace
 
 std::vector<std::uint32_t> find_held_back(const Levels& levels) {
-  const BodyTable& bodies = levels.bodies;
-  const auto& newcomers = bodies.newcomers();
-  if (newcomers.size() <= kBodiesOfAPlace) return {};
-  const auto counts = [&](std::uint32_t body) {
-    return bodies.alive(body) && meets_its_kind(bodies.properties(body));
-  };
-  const auto each_newcomer = [&](const auto& visit) {
-    for (std::size_t i = 0; i < newcomers.size(); ++i)
-      if (const std::uint32_t body = newcomers[i].index; bodies.waits_at(i) && counts(body))
-        visit(body, levels.state(body).position, *bodies.shape(body));
-  };
-  // Who meets the first at a place is of its crowd; who does not begins another. Beyond the most none is
-  // asked.
-  const auto meets = [&](std::uint32_t first, std::uint32_t body) {
-    const auto& may_pair = levels.statistical_settings.pair_filter;
-    return first == body || !may_pair || may_pair(first, body);
-  };
-  const auto find = [&](auto& map, Place place, std::uint32_t body) {
-    for (; place.which < kMostAtAPlace; ++place.which)
-      if (const auto at = map.find(place); at != map.end() && meets(at->second.first, body)) return at;
-    return map.end();
-  };
-  const auto find_or_begin = [&](auto& map, Place place, const auto& fresh) {
-    for (; place.which < kMostAtAPlace; ++place.which)
-      if (const auto at = map.try_emplace(place, fresh).first; meets(at->second.first, fresh.first))
-        return at;
-    return map.end();
-  };
-  Crowds crowds;
-  std::unordered_map<Place, Room, HashOfPlace> rooms;
-  each_newcomer([&](std::uint32_t body, const Vec3& position, const Shape& shape) {
-    const auto room = find_or_begin(rooms, room_of(position, shape), Room{.first = body});
-    if (room != rooms.end()) room->second.waiting += shape.volume;
-    const auto crowd = find_or_begin(crowds, place_of(position, shape), Crowd{position, &shape, body, 0});
-    if (crowd != crowds.end()) ++crowd->second.there;
-  });
-  each_newcomer([&](std::uint32_t body, const Vec3& position, const Shape& shape) {
-    const Place its = room_of(position, shape);
-    const auto at = find(rooms, its, body);
-    if (at == rooms.end()) return;
-    if (Room& room = at->second; !room.overlap && room.waiting > kFilled * volume_of(its))
-      room.overlap = overlaps_another(crowds, position, shape);
-  });
-  std::erase_if(crowds, [](const auto& crowd) { return crowd.second.there <= kBodiesOfAPlace; });
-  std::erase_if(rooms, [](const auto& room) { return !room.second.may_be_crowded(room.first); });
-  if (crowds.empty() && rooms.empty()) return {};
-  CrowdGrid grid;
-  for (auto& [place, crowd] : crowds) crowd.there = 0, grid.add(crowd);
-  for (std::uint32_t body = 0; body < bodies.indices(); ++body) {
-    if (!counts(body) || bodies.level(body).newcomer) continue;
-    const Vec3 position = levels.state(body).position;
-    const Place its = room_of(position, *bodies.shape(body));
-    grid.count(body, position, its, meets);
-    if (const auto room = find(rooms, its, body); room != rooms.end())
-      room->second.there += bodies.shape(body)->volume;
-  }
-  std::erase_if(rooms, [](const auto& room) { return !room.second.is_crowded(room.first); });
-  const bool more = levels.now % kStepsBetween == 0;
-  for (auto& [place, crowd] : crowds) crowd.there = std::min(crowd.there, kBodiesOfAPlace) - more;
-  for (auto& [place, room] : rooms)
-    room.there =
-        std::min(room.there, kFilled * (more ? std::nextafter(volume_of(place), 0.0) : volume_of(place)));
-  std::vector<std::uint32_t> held;
-  each_newcomer([&](std::uint32_t body, const Vec3& position, const Shape& shape) {
-    const auto crowd = find(crowds, place_of(position, shape), body);
-    const auto room = find(rooms, room_of(position, shape), body);
-    const bool waits = (crowd != crowds.end() && crowd->second.there >= kBodiesOfAPlace) ||
-                       (room != rooms.end() && room->second.there >= kFilled * volume_of(room->first));
-    if (waits) return held.push_back(body);
-    if (crowd != crowds.end()) ++crowd->second.there;
-    if (room != rooms.end()) room->second.there += shape.volume;
-  });
-  std::ranges::sort(held);
-  return held;
+  if (levels.bodies.newcomers().size() <= kBodiesOfAPlace) return {};
+  NewcomerQueue queue(levels);
+  if (!queue.gather()) return {};
+  queue.count_those_there();
+  return queue.let_in();
 }
 
 bool is_full_place(const Levels& levels, const Vec3& position, const Shape& shape) {
