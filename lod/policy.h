@@ -55,26 +55,26 @@ struct PolicySettings {
   std::variant<DistancePolicy, BudgetPolicy, WorkPolicy, ProjectedSizePolicy, ErrorBudgetPolicy> policy;
   double hysteresis = 0.1;    ///< ≥ 0, as a part of the distance or size
   int min_dwell_frames = 30;  ///< steps, ≥ 0: a body keeps a new rung at least this long
-  /// In a step, ≥ 0, nearest first; the rest wait their turn. Not among them are those of new bodies, those
-  /// that the caller forces, and those down to a limit or a budget that is exceeded.
+  /// Changes of rung in a step, ≥ 0, nearest first; the rest wait their turn. It does not count those of new
+  /// bodies, those that the caller forces, and those that bring bodies back within a limit or a budget.
   int max_transitions_per_frame = 4;
-  int most_full = kUnlimited;     ///< ≥ 0, bodies that the policy makes full, at any time: the nearest
-  int most_support = kUnlimited;  ///< ≥ 0, and `support`, of those that are awake
+  int most_full = kUnlimited;     ///< ≥ 0: so many bodies at most does the policy keep full, the nearest
+  int most_support = kUnlimited;  ///< ≥ 0: and so many awake ones at `support`
   /// ≥ 1: a body in no viewpoint's picture counts as so many times as far; infinity: it goes to the least
   /// rung that it may have.
   double out_of_view_factor = 1.0;
-  /// Whether a sphere is in view (m, world); empty: whether it meets the frustum of any viewpoint. It is
-  /// asked in every step about each body for which that makes a difference, and must not change the manager,
-  /// no more than `significance` must.
+  /// Whether a sphere (m, world) is in view; empty: whether it meets the frustum of any viewpoint. It is
+  /// called in every step for each body for which that makes a difference. Neither it nor `significance` may
+  /// change the manager.
   std::function<bool(const Vec3& center, double radius)> visible = {};
-  /// Times a body's importance; cut to 1e-3 … 1. It is asked about the bodies that a step looks at: those
-  /// that are full or awake, and a sleeper now and then.
+  /// A factor of a body's importance, limited to 1e-3 … 1. It is called for the bodies that a step considers:
+  /// those that are full or awake, and now and then a sleeper.
   std::function<double(BodyId)> significance = {};
-  /// s, 0 … 10: a body that moves farther than its radius in this time counts as near as it will come
-  /// meanwhile, and as what it will hit, where that is full: so it goes up before.
+  /// s, 0 … 10: a body that moves farther than its radius in this time counts as being as near as it will
+  /// come within it, and as near as the full body that it will hit: so it is promoted before.
   double look_ahead_s = 0.0;
-  /// Awake bodies that touch each other change rung together, all of a contact group or none, as the nearest
-  /// of them.
+  /// Awake bodies that touch each other (a contact group) change rung together, all or none, by the distance
+  /// of the nearest.
   bool contact_groups_together = false;
 
   ~PolicySettings();  // not inline: GCC 12 at -O3 warns of its functions in settings that do not name them
