@@ -1,5 +1,8 @@
 // What a caller's space holds, seen anew at the start of every step: its geoms may come, go and move at any
 // time, so a pointer of the last step is only ever compared with what the space holds now.
+//
+// Its files: space_mirror.cpp looks at the space; geom_identity_ode.h tells its geoms apart;
+// space_mirror_archive.cpp finds them again for the reader of a snapshot.
 #pragma once
 
 #include <cstdint>
