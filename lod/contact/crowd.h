@@ -1,5 +1,5 @@
-// Bodies that touch other bodies: their pair contacts and ground contacts solved together, momentum exact to
-// rounding.
+// Bodies that touch other bodies (a crowd): their contacts with each other and with the ground are solved
+// together, with momentum exact to rounding.
 #pragma once
 
 #include <algorithm>
@@ -30,43 +30,43 @@ struct CrowdSettings {
   double contact_margin = 0.002;  ///< over R
 };
 
-/// What a crowd touches in a step of `time` seconds.
+/// The contacts of a crowd in a substep of `time` seconds, and how they are solved.
 struct CrowdTouch {
   std::span<const CrowdContact> contacts;
   std::span<const SolidContact> solid_contacts;
   std::span<const FullContact> full_contacts;
   const FacesBelow& faces;
   double time = 0.0;  ///< s
-  /// s: who was still for so long falls asleep, if it stands firmly; larger ones later (RestLaw).
+  /// s: a body that has been still for so long falls asleep if it stands firmly; larger ones later (RestLaw).
   float still_time = 1e30f;
   int sweeps = 10;       ///< of the solver, at most
-  double parting = 1.0;  ///< how much of what push_out_overlap says is undone
+  double parting = 1.0;  ///< factor of push_out_overlap, by which overlaps are undone
 };
 
-/// The contact solver's work arrays, kept between steps so that a warm step allocates nothing.
+/// Solves a crowd. Its arrays are kept between steps, so that a warm step allocates nothing.
 class Crowd {
  public:
   explicit Crowd(JobRunner jobs = make_job_runner(1), const CrowdSettings& settings = {})
       : settings_(settings), jobs_(std::move(jobs)) {}
 
-  /// Solves the contacts of `touch` with the ground contacts of every body in them (the faces among these)
-  /// and those of the full contacts that hold up a full body. Bodies asleep hold still; none moves. One of
-  /// move() and drop() follows.
+  /// Solves the contacts of `touch` together with the ground contacts of every body in them (planes, and
+  /// `faces`) and with the full contacts that hold up a full body in them. Sleepers hold still, and nothing
+  /// moves yet. Must be followed by move() or drop().
   void solve(const ContactScene& scene, const CrowdTouch& touch);
-  /// Who sleeps and held still in that, though its weight and friction would not have held it.
+  /// Sleepers that solve() held still though their weight and friction would not have held them.
   std::span<const Participant> pressed() const { return pressed_; }
-  /// As if it had not been solved.
+  /// Undoes solve().
   void drop(const ContactScene& scene);
-  /// With what was solved: moves the statistical bodies by the touch's time. Full neighbours receive
-  /// impulses, the velocities that these give them, and shifts, but do not move on.
+  /// After solve(): moves the statistical bodies by the touch's time. Full neighbours receive impulses, the
+  /// velocities that these give them, and shifts, but do not move.
   ContactTally move(const ContactScene& scene, const CrowdTouch& touch);
-  /// Of a step in which sets of islands take their substeps one after the other, each between begin_islands()
-  /// and end_islands(): the impulses of its first substep begin with those of the last step.
+  /// Frames a step. In it, sets of islands take their substeps one set after the other, each between
+  /// begin_islands() and end_islands(); the first substep of each starts from the last step's impulses.
   void begin_step(double dt) { memory_.begin_step(dt), exchanges_.clear(); }
   void begin_islands() { memory_.begin_islands(); }
   void end_islands() { memory_.end_islands(); }
   void end_step() { memory_.end_step(); }
-  /// Since begin_step(), of full neighbours with each other.
+  /// What full neighbours gave each other since begin_step().
   std::span<const FullExchange> exchanges() const { return exchanges_; }
   void archive(StateArchive& a) { a(memory_); }
   void make_room(std::size_t bodies) { index_of_body_.resize(std::max(index_of_body_.size(), bodies), -1); }
@@ -74,34 +74,34 @@ class Crowd {
  private:
   static constexpr std::int64_t kBlock = 128;  // bodies or contacts of a job
 
-  /// What all its contacts give a body, and what the solver started from, N s.
+  /// The sum of a body's contact impulses (N s): solved, and as the solver started with them.
   struct Push {
     Vec3 now = Vec3::Zero(), before = Vec3::Zero();
-    bool forced = false;  ///< a force acts on one that it touches, perhaps through others
+    bool forced = false;  ///< a force acts on a body that it touches, perhaps through others
   };
 
-  /// How overlaps that came from another rung move a body out of them, m.
+  /// How far a body is moved out of overlaps that were brought from another rung.
   struct Parting {
     std::int32_t body = 0;
-    Vec3 by = Vec3::Zero();
-    double farthest = 0.0;
+    Vec3 by = Vec3::Zero();  ///< m, sum over its overlaps
+    double farthest = 0.0;   ///< m, by a single one at most
   };
 
-  /// Of a manifold, as bodies are moved out of it.
+  /// The overlap of a manifold, out of which bodies are moved.
   struct Overlap {
     Participant one, other;
-    double radius = 0.0;     ///< m, by which it is judged
-    double deep = 0.0;       ///< m: what is deeper is a good part of the thinner one's thickness
+    double radius = 0.0;     ///< m, with which its depth is compared
+    double deep = 0.0;       ///< m: a greater depth is a good part of the thinner body's thickness
     double by_others = 0.0;  ///< m, by which other contacts with that ground have moved the first out
     bool eased = false;      ///< brought from another rung
   };
 
-  /// One that is so deep in another that it is not at rest, and where it was before it is moved out.
+  /// A body that is so deep in another that it is not at rest.
   struct Insider {
     std::int32_t body = 0;
-    Vec3 from = Vec3::Zero();
-    double asked = 0.0;   ///< m: of both
-    float placed = 0.0f;  ///< s left, as StatisticalBody has it: the longer of the two
+    Vec3 from = Vec3::Zero();  ///< m, where it was before it is moved out
+    double asked = 0.0;        ///< m, by which both are to be moved
+    float placed = 0.0f;       ///< s, StatisticalBody::placed: the longer of the two
   };
 
   void gather(const ContactScene& scene, const CrowdTouch& touch);

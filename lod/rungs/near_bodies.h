@@ -1,6 +1,6 @@
-// Stage 3d: bodies of `support` and full ones, and those of `tables` near them, which are guests here for a
-// step. Who may touch another moves in substeps: contacts found, all of them solved at once, the bodies
-// moved; the others move by themselves.
+// Stage 3d: bodies of `support` and full ones, and bodies of `tables` near them, which are guests here for a
+// step. Bodies that may touch another move in substeps, in each of which contacts are found, all of them are
+// solved together, and the bodies are moved. The others move by themselves.
 //
 // Its files: near_bodies.cpp has the sequence of a step; near_bodies_waking.cpp which sleepers wake in it;
 // near_bodies_driven.cpp those that others drive too fast for what was found before.
@@ -47,18 +47,18 @@ class NearBodies {
   void step(double dt, SupportLevel& support, std::span<Guest> guests, NearSearch& search,
             std::span<FullNeighbor> neighbors, std::span<const FullContact> full_contacts, StageTimes& times,
             ContactTally& tally);
-  /// As bodies are added, little by little, so that no step has to.
+  /// Allocates for so many bodies: little by little as bodies are added, so that no step has to.
   void make_room(std::size_t bodies) {
     pairs_.make_room(bodies), near_.make_room(bodies), crowd_.make_room(bodies);
   }
   void archive(StateArchive& a) { a(pairs_, crowd_); }
   void set_gravity(const Vec3& gravity) { settings_.gravity = gravity; }
   void set_log(ContactLog* log) { log_ = log; }  ///< null: none
-  /// In place of a step, where nothing moves that could be near another.
+  /// In place of a step in which nothing moves that could be near another.
   void forget_pairs() { pairs_.clear(), carriers_.clear(); }
-  /// Of the last step, each perhaps more than once.
+  /// Kinematic bodies that touched full ones in the last step; a pair may appear more than once.
   std::span<const CarriedFull> carriers() const { return carriers_; }
-  /// Between bodies, found in the last substep of each island.
+  /// Contacts between bodies, as found in the last substep of each island.
   std::span<const CrowdContact> contacts() const { return pairs_.all_contacts(); }
 
  private:

@@ -19,20 +19,20 @@ namespace lodestone {
 
 using NearPair = std::pair<Participant, Participant>;
 
-/// In the order in which it is looked at.
+/// Two bodies, in the order in which the search looks at them.
 struct PlacedPair {
   ContactKey key = 0;
   Participant first = Participant::ground(), second = Participant::ground();
 };
 
-/// What is known of a near pair. A gap lasts until its bodies have moved by it, so most near pairs need no
-/// look at their hulls (conservative advancement; Mirtich, Impulse-based dynamic simulation of rigid body
-/// systems, 1996); a contact lasts while they move little.
+/// What is known of a near pair. A gap is known to remain until the bodies have moved by as much, so for most
+/// near pairs no hulls are searched (conservative advancement; Mirtich, Impulse-based dynamic simulation of
+/// rigid body systems, 1996). A contact is kept while the bodies move little.
 struct FoundPair : PlacedPair {
-  double gap = 0.0;  ///< m, at least, when it was found: valid while find_motion_since(*when) is less
-  std::optional<PairPose> when;              ///< how the bodies lay then; none: never
-  HullGap whole = {.normal = Vec3::Zero()};  ///< as the two after it, see find_pair_contacts
-  std::vector<KnownGap> of_pieces;
+  double gap = 0.0;  ///< m, lower bound when it was found: holds while find_motion_since(*when) is less
+  std::optional<PairPose> when;              ///< how the bodies lay then; none: it was never looked for
+  HullGap whole = {.normal = Vec3::Zero()};  ///< see find_pair_contacts
+  std::vector<KnownGap> of_pieces;           ///< see find_pair_contacts
   std::vector<HeldContact> contacts;
 
   void archive(StateArchive& a) { a(key, first, second, gap, when, whole, of_pieces, contacts); }
@@ -49,9 +49,9 @@ class NearPairs {
  public:
   explicit NearPairs(JobRunner jobs) : jobs_(std::move(jobs)) {}
 
-  /// Takes the pairs of a step; what is known of those that were near before stays so.
+  /// Takes the pairs of a step, and keeps what is known of those that were near before.
   void take(const ContactScene& scene, std::span<const NearPair> pairs);
-  /// More of the same step, of which nothing is known, for find_more_contacts().
+  /// Adds pairs in the same step, of which nothing is known, for find_more_contacts().
   void add(const ContactScene& scene, std::span<const NearPair> pairs);
   void clear();
   void archive(StateArchive& a);
@@ -59,32 +59,32 @@ class NearPairs {
   std::size_t size() const { return found_.size(); }
   const FoundPair& operator[](std::size_t i) const { return all_[found_[i]]; }
 
-  /// Of each body given, by index, before its contacts are looked for.
+  /// Computes how fast each of these bodies (indices) turns: before its contacts are looked for.
   void find_turning(const ContactScene& scene, std::span<const std::int32_t> bodies);
-  /// Of one that was just woken.
+  /// For a body that was just woken.
   void clear_turning(Participant p) { turning_[p.index()] = {}; }
-  /// Chooses the pairs of which a body moves at `pace`: for find_contacts.
+  /// Chooses the pairs for find_contacts(): those of which a body moves at `pace`.
   void choose(const NearMarks& near, Pace pace);
-  /// Of the pairs chosen, whose bodies must move at `pace` or sleep, the contacts that may close within
-  /// `time` seconds. Marks as crowded, and gives the pace to, who has one; of `movers`, nobody else is
-  /// crowded.
+  /// Finds the contacts of the chosen pairs that may close within `time` seconds. Bodies of these pairs must
+  /// move at `pace` or sleep. Marks the bodies of a contact as crowded, and gives them the pace; other bodies
+  /// of `movers` are then not crowded.
   void find_contacts(const ContactScene& scene, double time, std::span<const std::int32_t> movers,
                      NearMarks& near, Pace pace);
-  /// Of those that were added since, for the same time.
+  /// Does the same for pairs that were added since.
   void find_more_contacts(const ContactScene& scene, double time, NearMarks& near, Pace pace);
-  /// What these found.
+  /// The contacts that these two found.
   std::span<const CrowdContact> contacts() const { return std::span(contacts_).subspan(kept_contacts_); }
-  /// Those of islands that have gone through their substeps stay, while others' are looked for.
+  /// Keeps the contacts of islands that have gone through their substeps, while those of others are found.
   void keep_contacts() { kept_contacts_ = contacts_.size(); }
-  /// Of all islands, as their last substeps left them.
+  /// The contacts of all islands, as their last substeps left them.
   std::span<const CrowdContact> all_contacts() const { return contacts_; }
   void forget_contacts() { contacts_.clear(), kept_contacts_ = 0; }
 
-  /// m: by how much the gap of a pair can shrink in `time` seconds, at most, if nothing strikes them.
+  /// m: by how much at most the gap of a pair can shrink in `time` seconds, if nothing strikes the two.
   double find_approach(const ContactScene& scene, const FoundPair& pair, double time) const;
-  /// m: the gap of a pair, at least, now. None where that was never looked for.
+  /// m: a lower bound of the gap of a pair now; 0 if it was never looked for.
   double gap_left(const ContactScene& scene, const FoundPair& pair) const;
-  /// rad/s, world.
+  /// rad/s, world: angular velocity.
   Vec3 turning_of(const ContactScene& scene, Participant p) const;
   /// m/s, of a point that goes with the body.
   Vec3 point_velocity(const ContactScene& scene, Participant p, const Vec3& point) const;

@@ -1,11 +1,15 @@
-// Stage 3d: in how many substeps those bodies move that may touch another. A pile needs them: contacts found
-// once in 1/60 s miss what a body that falls into it at several m/s meets on its way, and ten sweeps over a
-// pile of many layers leave it sinking into itself (a bin of 100 boxes: time to sleep three times ODE's, a
-// third too low). After Macklin et al., Small steps in physics simulation, 2019. A heap that has slowed down
-// meets nothing new on its way: it takes the step at once, with the sweeps of three substeps. Each island,
-// the bodies that may touch within the step, directly or through others, has a pace of its own: what goes on
-// elsewhere changes nothing for it. (But all that touches sleepers or full bodies is one island, since these
-// may wake, or hand on what they are given.)
+// Stage 3d: in how many substeps bodies move that may touch another (Macklin et al., Small steps in physics
+// simulation, 2019).
+//
+// A pile needs substeps. If contacts are found once in 1/60 s, a body that falls into it at several m/s
+// passes what it should meet on its way; and ten sweeps over a pile of many layers leave it sinking into
+// itself (a bin of 100 boxes takes three times as long as ODE's to sleep, and is a third too low). A heap
+// that has slowed down meets nothing new on its way: it takes the step at once, with the sweeps of three
+// substeps.
+//
+// An island is the bodies that may touch within the step, directly or through others. Each has a pace of its
+// own, so that nothing elsewhere affects it. But all islands with sleepers or full bodies count as one, since
+// these may wake, or pass on impulses.
 #pragma once
 
 #include <algorithm>
@@ -20,34 +24,35 @@
 
 namespace lodestone {
 
-/// Of the contact solver, at most, in each substep.
+/// Sweeps of the contact solver in each substep, at most.
 inline int sweeps_of(Pace pace) { return std::max(10, 30 / pace); }
-/// Of overlaps, how much of what a substep undoes elsewhere (push_out_overlap): at once nearly as much is
-/// undone in a step as in three substeps.
+/// By how much more than push_out_overlap says a substep undoes overlaps: a step taken at once then undoes
+/// nearly as much as three substeps.
 inline double parting_of(Pace pace) { return pace == 1 ? 1.6 : 1.0; }
 
 class SubstepPlan {
  public:
   explicit SubstepPlan(JobRunner jobs) : jobs_(std::move(jobs)) {}
 
-  /// For a step of `dt` seconds: marks those that may touch another, or a solid of the ground, and gives them
-  /// the pace of their island. A hull that touches nothing but ground that stands still, or goes on as one
-  /// without turning, is not marked.
+  /// For a step of `dt` seconds: marks the bodies that may touch another, or a solid of the ground, and gives
+  /// them the pace of their island. It does not mark a hull that touches only ground that stands still, or
+  /// moves as a whole without turning.
   void make(const ContactScene& scene, const NearPairs& pairs, std::span<const SolidContact> solid_contacts,
             const FacesBelow& faces, double dt, NearMarks& near);
-  /// That any island has, in ascending order.
+  /// The paces of all islands, each once, ascending.
   std::span<const Pace> paces() const { return paces_; }
 
  private:
   static constexpr double kApart = -1.0, kFollowing = -2.0;
   struct Island {
-    double longest = kApart;  // of its ways
+    double longest = kApart;  // over R: greatest PairWay::along
     double fall = 0.0;        // over R: what gravity adds to the way of its smallest body in the step
-    int bodies = 0;           // that are awake
+    int bodies = 0;           // number of bodies that are awake
     bool is_hard = false;     // sweeps of three substeps are not enough for a step at once
   };
 
-  /// What the plan asks of a pair, side by side: the pairs themselves lie far apart.
+  /// What the plan needs of a pair, in an array of their own, as the pairs themselves lie far apart in
+  /// memory.
   struct PairWay {
     Participant first = Participant::ground(), second = Participant::ground();
     bool first_is_other = false, second_is_other = false;  // full, or asleep

@@ -1,5 +1,5 @@
-// Bodies of `support`, as dense arrays: how one moves that touches no other, comes to rest, sleeps and wakes.
-// Those near others are moved by rungs/near_bodies.h.
+// Bodies of `support`, in dense arrays: how a body that touches no other moves, comes to rest, sleeps and
+// wakes. Bodies near others are moved by rungs/near_bodies.h.
 #pragma once
 
 #include <optional>
@@ -30,10 +30,11 @@ class SupportLevel {
         sleepers_(sleepers),
         rest_law_(settings.sleep) {}
 
-  /// Returns the slot. `eased`: comes from another rung, perhaps with overlaps.
+  /// Returns the slot; `mass` in kg. `eased`: it comes from another rung, perhaps with overlaps.
   int add(std::uint32_t owner, std::uint32_t kind, double mass, const RigidState& state, bool asleep,
           bool eased);
-  /// The last body moves into the slot and its owner is returned (none where it was the last). Wakes nobody.
+  /// The last body moves into the slot, and its owner is returned (none if it was the last itself). Wakes
+  /// nobody.
   std::optional<std::uint32_t> remove(int slot);
 
   int size() const { return int(clips_.size()); }
@@ -52,24 +53,24 @@ class SupportLevel {
     return body(slot).since_crowded == 0.0f || body(slot).on_solid;
   }  ///< touched another body, or an edge of the ground, in the last step
   void wake(int slot);
-  /// It may overlap others, and is to part from them: until a step has seen that it overlaps nobody.
+  /// It may overlap others, and is to be parted from them until a step finds that it overlaps nobody.
   void note_placed(int slot);
   void put_to_sleep(int slot);  ///< where it is, at once
-  /// m/s², from the next step on. Clips end: they were recorded under another.
+  /// m/s², from the next step on. Clips end, as they were recorded under another gravity.
   void set_gravity(const Vec3& gravity);
   void set_log(ContactLog* log) { log_ = log; }  ///< null: none
-  /// Appends the owners of those that woke since this was last asked.
+  /// Appends the owners of bodies that woke since the last call.
   void take_woke(std::vector<std::uint32_t>& owners);
   void add_force(int slot, const Vec3& force, const Vec3& torque);  ///< over the next step; wakes it
 
   // A step, in this order.
-  /// Until end_search(), for whom the near are searched, bodies have what forces will have given them by the
-  /// step's end.
+  /// Until end_search() bodies have the velocities that forces will have given them by the end of the step:
+  /// the search for near pairs needs these.
   void begin_step(double dt, ContactTally& tally);
   void end_search();
   const ActingForces& forces() const { return acting_; }  ///< of this step
-  /// Bodies of `tables` that are near others in this step follow in bodies(), until dismiss_guests(). They
-  /// are among those awake, unless they sleep.
+  /// Appends to bodies(), until dismiss_guests(), bodies of `tables` that are near others in this step. Those
+  /// that do not sleep are in awake_with_guests(), too.
   void admit_guests(std::span<const StatisticalBody> guests);
   std::span<StatisticalBody> bodies() { return bodies_; }
   std::span<const StatisticalBody> bodies() const { return bodies_; }
@@ -79,7 +80,7 @@ class SupportLevel {
   /// step_support_body takes it.
   void move_alone(std::int32_t slot, std::span<const HalfSpace> faces, double time, ContactTally& tally,
                   const Quat* turned = nullptr);
-  /// Whether it rests, after a move of `time` seconds; what is not sound is put right.
+  /// After a move of `time` seconds: updates whether the body rests, and repairs a state that is not sound.
   void update_quiet(std::int32_t slot, std::span<const HalfSpace> faces, double time, ContactTally& tally);
   void dismiss_guests();
   void end_step();

@@ -1,5 +1,5 @@
-// A body of `tables` that is near bodies of another rung, or at an edge of the ground: for a step it is moved
-// as those of `support` are, one by one (rungs/near_bodies.h).
+// A body of `tables` that is near bodies of another rung, or at an edge of the ground. For a step it is moved
+// one by one, as bodies of `support` are (rungs/near_bodies.h).
 #pragma once
 
 #include "lod/tables/tables_model.h"
@@ -9,11 +9,12 @@ namespace lodestone {
 struct Guest {
   std::int32_t slot = 0;  ///< in the tables level
   RestingRecord resting = {};
-  bool on_hull =
-      false;           ///< meets the ground on its hull, as it touches none of its own rung; else as a sphere
-  bool moved = false;  ///< out: else it moves as if it had not been here
+  /// Meets the ground with its hull, since it touches no body of its own rung; else with its sphere.
+  bool on_hull = false;
+  bool moved = false;    ///< out: it was moved here; else it moves as if it had been no guest
   bool carried = false;  ///< out: by what nothing stops (rungs/carried_bodies.h)
-  bool touched = false;  ///< out: by a body of another rung, or, a sphere, by several parts of the ground
+  bool touched =
+      false;  ///< out: by another rung's body, or, if it is a sphere, by several parts of the ground
 };
 
 }  // namespace lodestone

@@ -1,8 +1,12 @@
-// Bodies of `tables`, in dense arrays: towards each other hulls that meet in one point, along the best of
-// four separating axes (as published: spheres). Of stage 3: a start (radii, reaches); b near pairs (cells),
-// their contacts and who wakes; c the response of all these, one after the other; d those near bodies of
-// other rungs are moved among them (rungs/near_bodies.h); e the ground: impacts at their exact time answered
-// by their hulls (as published: from the tables), and motion; f rest.
+// Bodies of `tables`, in dense arrays. They meet each other as hulls that touch in one point, along the best
+// of four separating axes (as published: as spheres). Their part in stage 3 of a step:
+// - a start: radii and reaches
+// - b near pairs (cells), their contacts, and which sleepers these wake
+// - c all these contacts are answered, one after the other
+// - d bodies that are near ones of other rungs are moved among those (rungs/near_bodies.h)
+// - e motion; impacts on the ground are answered at their exact time, by the hulls (as published: from the
+//   tables)
+// - f rest
 #pragma once
 
 #include <algorithm>
@@ -48,13 +52,14 @@ class TablesLevel {
   TablesLevel(const TablesLevel&) = delete;  // its stages point at it
   TablesLevel& operator=(const TablesLevel&) = delete;
 
-  /// Returns the slot. `arrives`: from another rung, at the height that its hull has.
+  /// Returns the slot; `mass` in kg. `arrives`: it comes from another rung, at the height that its hull has.
   int add(std::uint32_t owner, std::uint32_t kind, double mass, const RigidState& state, bool asleep,
           bool arrives);
-  /// The last body moves into the slot and its owner is returned (none where it was the last). Wakes nobody.
+  /// The last body moves into the slot, and its owner is returned (none if it was the last itself). Wakes
+  /// nobody.
   std::optional<std::uint32_t> remove(int slot);
 
-  /// That its arrays hold, without the sleepers' store.
+  /// Bytes of its arrays, without the sleepers' store.
   std::size_t bytes() const;
   int size() const { return int(spheres_.size()); }
   int asleep_count() const { return int(spheres_.size() - spheres_.awake); }
@@ -78,39 +83,39 @@ class TablesLevel {
   void wake(int slot);
   void let_tip(int slot);       ///< as after a fall: where what bore it may be gone (tipping.h)
   void put_to_sleep(int slot);  ///< where it is, at once
-  /// m/s², from the next step on. Who comes to rest begins anew.
+  /// m/s², from the next step on. Bodies that were coming to rest begin anew.
   void set_gravity(const Vec3& gravity);
   void set_log(ContactLog* log) { log_ = log; }  ///< null: none
-  /// Appends the owners of those that woke since this was last asked.
+  /// Appends the owners of bodies that woke since the last call.
   void take_woke(std::vector<std::uint32_t>& owners);
   void add_force(int slot, const Vec3& force, const Vec3& torque);  ///< over the next step; wakes it
   double sphere_radius(int slot) const { return double(spheres_.radius[place_of(slot)]); }
 
-  // A step, in this order. `order`: of the awake spheres in the cells of the step before, empty where these
-  // hold for others.
+  // A step, in this order. `order`: the order of the awake spheres in the cells of the step before; empty if
+  // those cells were of other bodies.
   void begin_step(double dt, std::span<const std::uint32_t> order, ContactTally& tally);
   const Spheres& spheres() const { return spheres_; }
   std::span<const float> reach() const { return step_.reach; }  ///< m, of those awake
-  CellGrid::Lent free_rows() { return step_.free_rows(); }      ///< to search in, until respond()
-  /// Contacts of spheres; pairs with other balls that `cells` holds go to `others`, where given. Returns
+  CellGrid::Lent free_rows() { return step_.free_rows(); }      ///< scratch memory, until respond()
+  /// Finds the contacts of spheres. Pairs with other balls in `cells` go to `others`, if given. Returns
   /// whether any balls there meet.
   bool find_contacts(const CellGrid& cells, std::vector<BallPairs>* others);
-  /// In their place, where no sphere is near another body: those with further planes alone.
+  /// In place of find_contacts(), when no sphere is near another body: contacts with further planes alone.
   void find_ground_contacts();
-  /// In their place, where there are none.
+  /// In place of find_contacts(), when there are none.
   void forget_contacts() {
     contacts_.clear(), further_planes_.clear(), touched_sleepers_.forget_left_asleep();
   }
-  /// Slots of those in this step that are at an edge of the ground or between parts of it that move, or,
-  /// published, that parts of it hold several ways: planes do not tell how they go on.
+  /// Slots of the bodies whose motion planes do not describe in this step: those at an edge of the ground, or
+  /// between parts of it that move; as published, also those that touch several parts of it.
   std::span<const std::int32_t> cornered() const { return near_ground_.cornered(); }
-  /// `guests`: who will be described and taken.
+  /// Answers the contacts. `guests`: those for which describe() and take_guests() will be called.
   void respond(std::span<const Guest> guests, ContactTally& tally);
-  /// Who it is in this step: after respond().
+  /// Fills in what a guest is in this step; after respond().
   void describe(Guest& guest) const;
-  /// The body as it would go on, with what its contacts with spheres give it.
+  /// The guest as a body, with what its contacts with spheres give it.
   StatisticalBody guest_body(const Guest& guest) const;
-  /// Where those that were moved are now; `before`: as guest_body() gave them.
+  /// Takes the guests back as they were moved; `before`: as guest_body() gave them.
   void take_guests(std::span<const Guest> guests, std::span<const StatisticalBody> before,
                    std::span<const StatisticalBody> bodies);
   void finish(ContactTally& tally);
@@ -119,7 +124,7 @@ class TablesLevel {
   /// The kinds must be those of the writer already.
   void archive(StateArchive& a);
 
-  /// Counted from its arrays, of the last step.
+  /// Bytes that the last step moved, counted from its arrays.
   double count_traffic(bool pair_phase) const;
 
  private:
