@@ -14,59 +14,7 @@ Box placed(const Box& box, const GroundPose& pose) {
   return {center - reach, center + reach};
 }
 
-// Where a part is `after` seconds into the step.
-GroundPose pose_after(const GroundPose& pose, double after) {
-  if (pose.goes_on_s == 0.0 || after == 0.0) return pose;
-  GroundPose later = pose;
-  later.position += pose.velocity * after;
-  later.orientation = (rotation_from_vector(pose.angular_velocity * after) * pose.orientation).normalized();
-  return later;
-}
-
-// rad: a vector along the axis.
-Vec3 turn_between(const GroundPose& from, const GroundPose& to) {
-  const Eigen::AngleAxisd turn(to.orientation * from.orientation.conjugate());
-  return turn.angle() * turn.axis();
-}
-
-// One that was put on in the last `since` s, as it seems to go, and its speed, m/s. No faster than it went in
-// the step before: what is put elsewhere once throws nobody.
-std::pair<GroundPose, double> pose_put_on(const GroundPart& part, double since) {
-  GroundPose pose =
-      put_from(part.put_on->from, {part.pose.position, part.pose.orientation}, part.rim(), since);
-  const double speed = pose.velocity.norm() + pose.angular_velocity.norm() * part.rim();
-  const double share = speed > 0.0 ? std::min(1.0, part.put_on->last_speed / speed) : 0.0;
-  pose.velocity *= share, pose.angular_velocity *= share;
-  return {pose, speed};
-}
-
 }  // namespace
-
-GroundPose put_from(const GroundPose& from, const GroundPose& to, double rim, double dt) {
-  constexpr double kLeap = 50.0;    // m/s
-  constexpr double kFarTurn = 0.5;  // rad
-  const Vec3 velocity = (to.position - from.position) / dt, turn = turn_between(from, to);
-  GroundPose going = to;
-  if (velocity.norm() > kLeap || (turn.norm() > kFarTurn && turn.norm() * rim > kLeap * dt)) return going;
-  going.velocity = velocity;
-  going.angular_velocity = turn / dt;
-  return going;
-}
-
-GroundPose coming_to(const GroundPose& put, double dt) {
-  if (put.velocity.isZero(0.0) && put.angular_velocity.isZero(0.0)) return put;
-  GroundPose coming = put;
-  coming.position -= dt * put.velocity;
-  coming.orientation = rotation_from_vector(-dt * put.angular_velocity) * put.orientation;
-  coming.goes_on_s = dt;
-  return coming;
-}
-
-GroundPose coming_to(const GroundPose& put, double dt, double part) {
-  GroundPose coming = coming_to(put, dt);
-  if (coming.goes_on_s > 0.0) coming.goes_on_s = part;
-  return coming;
-}
 
 GroundId Ground::new_id(Entry entry) {
   if (free_entries_.empty()) {
@@ -155,114 +103,6 @@ void Ground::move_plane(GroundId id, const HalfSpace& plane) {
   HalfSpace& moved = planes_[std::size_t(entries_[id.index].plane)];
   moved = plane;
   moved.id = id;
-}
-
-void Ground::move_part(GroundId id, const GroundPose& pose) {
-  const auto index = std::size_t(entries_[id.index].part);
-  if (pose.comes_back) note_put(*parts_[index], pose);
-  stand(index, pose);
-  if (pose.comes_back && parts_[index]->moves()) moved_.push_back(id);
-}
-
-void Ground::stand(std::size_t index, const GroundPose& pose) {
-  GroundPart& part = *parts_[index];
-  moving_ -= part.moves();
-  const bool stays = part.pose.position == pose.position &&
-                     part.pose.orientation.coeffs() == pose.orientation.coeffs() &&
-                     part.pose.goes_on_s == 0.0 && pose.goes_on_s == 0.0;
-  part.pose = pose;
-  moving_ += part.moves();
-  if (!stays) hold_anew(std::int32_t(index));
-}
-
-void Ground::note_put(GroundPart& part, const GroundPose& pose) {
-  if (!pose.velocity.isZero(0.0) || !pose.angular_velocity.isZero(0.0)) return;
-  if (part.put_on) {
-    part.put_on->moved = true;
-  } else {
-    part.put_on = {part.pose};
-    put_on_.push_back(part.id);
-  }
-}
-
-void Ground::begin_step(double dt, double since, const std::function<void(const Box&)>& stands_again) {
-  keep_step();
-  if (since > 0.0) {
-    began_ = true;
-    std::swap(going_, moved_);
-    moved_.clear();
-    note_put_on();
-    if (!put_on_.empty()) go_as_put(dt, since, stands_again);
-  }
-  if (moving_ == 0) return;
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    if (!parts_[i] || !parts_[i]->pose.comes_back || !parts_[i]->moves()) continue;
-    if (parts_[i]->pose.goes_on_s == dt) continue;
-    parts_[i]->pose.goes_on_s = dt;
-    hold_anew(std::int32_t(i));
-  }
-}
-
-void Ground::go_on() {
-  const auto move = [&](std::size_t index) {
-    const GroundPose& pose = parts_[index]->pose;
-    stand(index, pose_after(pose, pose.goes_on_s));
-  };
-  std::ranges::sort(going_, {}, &GroundId::index);
-  const auto are_one = [](GroundId a, GroundId b) { return a.index == b.index; };
-  going_.erase(std::unique(going_.begin(), going_.end(), are_one), going_.end());
-  const bool first = was_put_.empty();
-  for (const GroundId id : going_) {
-    if (!valid(id) || !part(id).pose.comes_back || !part(id).moves()) continue;
-    const auto index = std::size_t(entries_[id.index].part);
-    if (first) was_put_.emplace_back(id, parts_[index]->pose);
-    move(index);
-  }
-  for (std::size_t i = 0; i < parts_.size(); ++i)
-    if (parts_[i] && !parts_[i]->pose.comes_back && parts_[i]->pose.goes_on_s > 0.0) move(i);
-}
-
-void Ground::come_back() {
-  for (const auto& [id, pose] : was_put_)
-    if (valid(id)) stand(std::size_t(entries_[id.index].part), pose);
-  was_put_.clear();
-}
-
-void Ground::note_put_on() {
-  for (const GroundId id : put_on_)
-    if (valid(id)) put_on_before_.push_back({id, *part(id).put_on, part(id).pose});
-}
-
-void Ground::undo_step() {
-  for (const Noted& noted : put_on_before_) {
-    if (!valid(noted.id)) continue;
-    const auto index = std::size_t(entries_[noted.id.index].part);
-    if (!std::exchange(parts_[index]->put_on, noted.put_on)) put_on_.push_back(noted.id);
-    stand(index, noted.pose);
-  }
-  if (began_) moved_.insert(moved_.begin(), going_.begin(), going_.end());
-  keep_step();
-}
-
-void Ground::go_as_put(double dt, double since, const std::function<void(const Box&)>& stands_again) {
-  std::erase_if(put_on_, [&](GroundId id) {
-    if (!valid(id)) return true;
-    const auto index = std::size_t(entries_[id.index].part);
-    GroundPart& held = *parts_[index];
-    const bool has_own_velocity = held.pose.comes_back && held.moves();
-    if (!has_own_velocity && held.put_on->moved) {
-      const auto [pose, speed] = pose_put_on(held, since);
-      stand(index, held.shape.probe ? pose : coming_to(pose, since, dt));
-      held.put_on = {.from = pose, .moved = false, .last_speed = speed};
-      return false;
-    }
-    if (!has_own_velocity && held.moves()) {
-      stands_again(bounds(id));
-      stand(index, {held.put_on->from.position, held.put_on->from.orientation});
-    }
-    held.put_on.reset();
-    return true;
-  });
 }
 
 Box Ground::bounds(GroundId id) const { return bounds_[std::size_t(entries_[id.index].part)]; }
@@ -365,31 +205,13 @@ void Ground::archive(StateArchive& a) {
   std::vector<std::uint32_t> first;
   for (const auto& part : parts_) first.push_back(part && part->solids ? part->first_number : kNone);
   std::uint32_t numbers = numbers_;
-  struct Put {
-    GroundId id;
-    PutOn on;
-    GroundPose pose;  // as it goes, of which its caller knows nothing
-  };
-  std::vector<Put> put;
-  for (const GroundId id : put_on_)
-    if (valid(id)) put.push_back({id, *part(id).put_on, part(id).pose});
-  a(first, numbers, put, moved_);
+  std::vector<Noted> inferred;
+  for (const GroundId id : inferred_)
+    if (valid(id)) inferred.push_back({id, *part(id).inferred, part(id).pose});
+  a(first, numbers, inferred, moved_);
   if (!a.reading()) return;
   std::erase_if(moved_, [&](GroundId id) { return !valid(id) || is_plane(id); });
-  for (const GroundId id : put_on_) {  // the reader's own: each stands where it was put last
-    if (!valid(id)) continue;
-    const auto index = std::size_t(entries_[id.index].part);
-    const std::optional<PutOn> on = std::exchange(parts_[index]->put_on, std::nullopt);
-    if (!parts_[index]->pose.comes_back && parts_[index]->moves())
-      stand(index, {on->from.position, on->from.orientation});
-  }
-  std::erase_if(put, [&](const Put& p) { return !valid(p.id) || is_plane(p.id); });
-  put_on_.clear();
-  for (const Put& p : put) {
-    const auto index = std::size_t(entries_[p.id.index].part);
-    put_on_.push_back(p.id), parts_[index]->put_on = p.on;
-    stand(index, p.pose);
-  }
+  take_inferred(std::move(inferred));
   for (std::size_t i = 0; i < std::min(first.size(), parts_.size()); ++i) {
     if (!parts_[i]) continue;
     if (first[i] == kNone) {

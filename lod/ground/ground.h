@@ -1,6 +1,6 @@
-// What does not move of itself, and everything rests on: planes, and parts that are made of convex solids
-// (ground_solids.h) or known by rays only. Parts can be moved, and then carry what lies on them, and they
-// come and go.
+// What does not move of itself, and everything rests on: planes, and parts, which are made of convex solids
+// (ground_solids.h) or known only by rays. Parts come and go, and can be moved; then they carry what lies on
+// them (ground_motion.cpp).
 #pragma once
 
 #include <functional>
@@ -39,35 +39,39 @@ struct GroundShape {
 
 /// Where a part stands, and how it moves in this step.
 struct GroundPose {
-  Vec3 position = Vec3::Zero();
+  Vec3 position = Vec3::Zero();  ///< m
   Quat orientation = Quat::Identity();
-  Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();  ///< m/s, rad/s: what lies on it feels this
-  double goes_on_s =
-      0.0;  ///< for so long it moves on from there: the next step; 0: it stands where it was put already
-  bool comes_back = false;  ///< after each step it stands where it was put again
+  Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();  ///< m/s, rad/s: carries what lies on it
+  /// s, for which it moves on from there: the next step; 0: it stands there during the step, too.
+  double goes_on_s = 0.0;
+  bool comes_back = false;  ///< after each step it is where it was put again
 };
 
-/// `to` with the velocities of what was put there from `from` in `dt` s and is nowhere farther from its
-/// position than `rim` m. Without where it went faster than 50 m/s, or turned by more than half a radian with
-/// a rim as fast: that was put elsewhere, and carries nothing along.
+/// `to` with the velocities of a part that moved there from `from` in `dt` s; none of its points is farther
+/// from its position than `rim` m. Without velocities if it went faster than 50 m/s, or turned by more than
+/// half a radian with a rim as fast: then it was put elsewhere, and carries nothing along.
 GroundPose put_from(const GroundPose& from, const GroundPose& to, double rim, double dt);
-/// `put`, which goes, as it comes to stand there within `dt` s: what lies on it goes along.
+/// The pose from which a part with the velocities of `put` comes to stand at `put` within `dt` s, so that
+/// what lies on it goes along.
 GroundPose coming_to(const GroundPose& put, double dt);
-/// The same of a step that is divided, at the beginning of its first part, of `part` s.
+/// The same at the beginning of a divided step of `dt` s, whose first part takes `part` s.
 GroundPose coming_to(const GroundPose& put, double dt, double part);
 
-/// Of a part that was put elsewhere without a velocity, since the last step began or before that.
-struct PutOn {
-  GroundPose from;
-  bool moved = true;
-  double last_speed = 0.0;  ///< m/s, in the last step, of no point of it more
+/// `pose` as it is `after` seconds into the step.
+GroundPose pose_after(const GroundPose& pose, double after);
+
+/// The motion of a part that its caller puts elsewhere step by step, without a velocity.
+struct InferredMotion {
+  GroundPose from;          ///< where it was put before
+  bool moved = true;        ///< it was put elsewhere since the last step began
+  double last_speed = 0.0;  ///< m/s, in the last step: greatest speed of any of its points
 };
 
 struct GroundPart {
   GroundId id;
   GroundShape shape;
   GroundPose pose;
-  std::optional<PutOn> put_on = {};
+  std::optional<InferredMotion> inferred = {};  ///< none: it was not put elsewhere lately
   MaterialId material = 0;
   std::optional<GroundSolids> solids;  ///< once made
   std::uint32_t first_number = 0;      ///< of its solids, for what is remembered of contacts with them
@@ -76,14 +80,14 @@ struct GroundPart {
   Vec3 velocity_at(const Vec3& point) const {
     return pose.velocity + pose.angular_velocity.cross(point - pose.position);
   }
-  /// Along the chord of the arc that a rider whose centre is `center` follows in `time` s.
+  /// m/s, along the chord of the arc on which it carries a body whose centre is `center` in `time` s.
   Vec3 carrying_velocity(const Vec3& center, double time) const {
     const Quat half_way = rotation_from_vector(0.5 * time * pose.angular_velocity);
     return pose.velocity + pose.angular_velocity.cross(half_way * (center - pose.position));
   }
   /// m, from its position to its farthest point, at most.
   double rim() const { return shape.bounds.center().norm() + 0.5 * shape.bounds.sizes().norm(); }
-  /// m/s: of no point of it more.
+  /// m/s, of any of its points.
   double greatest_speed() const { return pose.velocity.norm() + pose.angular_velocity.norm() * rim(); }
 };
 
@@ -96,7 +100,7 @@ struct PlacedSolid {
   std::uint32_t number = 0;  ///< the same for as long as the part is there
 };
 
-/// The plane of a part that is known by rays, below (or a little above) `center`; none where a ray of three
+/// The plane of a part that is known by rays, below (or a little above) `center`. None if a ray of three
 /// times `reach` m meets nothing, and for other parts.
 std::optional<HalfSpace> probe_below(const GroundPart& part, const Vec3& center, double reach);
 
@@ -119,21 +123,22 @@ class Ground {
   void remove(GroundId id);
   void move_plane(GroundId id, const HalfSpace& plane);
   void move_part(GroundId id, const GroundPose& pose);
-  /// Of a part that is known by rays: where these come from.
+  /// For a part that is known by rays: the direction from which they come.
   void set_up(GroundId id, const Vec3& up) { parts_[std::size_t(entries_[id.index].part)]->shape.up = up; }
-  /// Parts that come back move on in the next step, of `dt` s. Those that were put elsewhere in the last
-  /// `since` s and in the step before, without a velocity, go as they seem to, and `stands_again` is told the
-  /// bounds of those that did so until now; 0: they go on as in the part of a step before this one.
+  /// Begins a step of `dt` s, in which parts with a velocity move on. Parts that were put elsewhere without a
+  /// velocity, in the last `since` s and in the step before, move with an inferred velocity; `stands_again`
+  /// is called with the bounds of those that have stopped doing so. `since` 0: this is a later part of a
+  /// divided step, and they go on.
   void begin_step(double dt, double since,
                   const std::function<void(const Eigen::AlignedBox3d&)>& stands_again);
-  /// Before a later part of a divided step: what was moved for that step stands where it has gone in the part
-  /// before. Belts, which are not moved, begin anew.
+  /// Before a later part of a divided step: parts that were moved for that step go on from where they came in
+  /// the part before. Belts, which are not moved, begin anew.
   void go_on();
-  /// After the last part: what comes back stands where it was put.
+  /// After the last part of a divided step: what comes back is where it was put again.
   void come_back();
-  /// What begin_step knew of what was put on, again: that step was none. Until keep_step().
+  /// Takes back begin_step(), as the step failed. Possible until keep_step().
   void undo_step();
-  void keep_step() { put_on_before_.clear(), began_ = false; }
+  void keep_step() { inferred_before_.clear(), began_ = false; }
   const GroundPart& part(GroundId id) const { return *parts_[std::size_t(entries_[id.index].part)]; }
   const HalfSpace& plane(GroundId id) const { return planes_[std::size_t(entries_[id.index].plane)]; }
   /// Of a part, where it stands now.
@@ -142,8 +147,8 @@ class Ground {
 
   std::span<const HalfSpace> planes() const { return planes_; }
   std::size_t parts() const { return parts_used_; }
-  /// Not the ground itself, but by what numbers its solids are remembered and what is put on: as far as the
-  /// reader has the same parts.
+  /// Not the ground itself, but the numbers by which its solids are remembered, and inferred motion, as far
+  /// as the reader has the same parts.
   void archive(StateArchive& a);
   bool has_parts() const { return parts_used_ > 0; }
   bool any_moves() const { return moving_ > 0; }
@@ -152,10 +157,10 @@ class Ground {
   /// Appends the parts whose bounding boxes come within `reach` of `center`, in the order of their making.
   /// Not for several threads at once, as it makes solids, but where MadeOnly is.
   void find_parts(const Vec3& center, double reach, std::vector<const GroundPart*>& found) const;
-  /// Makes the solids of those parts. Whether any is known by rays, which only one thread may cast.
+  /// Makes the solids of those parts. Returns whether any is known by rays, which only one thread may cast.
   bool make_near(const Vec3& center, double reach) const;
-  /// While it is there find_parts is for several threads, and passes over parts whose solids are not made
-  /// yet: for whom may come near them make_near() has made them.
+  /// While it exists several threads may call find_parts, which passes over parts whose solids are not made
+  /// yet: call make_near() before for all that may be asked about.
   class MadeOnly {
    public:
     /// `by_rays`: one thread alone is at work, which may cast them.
@@ -175,12 +180,19 @@ class Ground {
     std::uint32_t generation = 0;
     std::int32_t plane = -1, part = -1;
   };
+  /// A part with an inferred motion, as it was at some time.
+  struct Noted {
+    GroundId id;
+    InferredMotion inferred;
+    GroundPose pose;  // with the velocity, of which its caller knows nothing
+  };
   GroundId new_id(Entry entry);
-  void note_put(GroundPart& part, const GroundPose& pose);
+  void note_repositioned(GroundPart& part, const GroundPose& pose);
   void stand(std::size_t part, const GroundPose& pose);
-  void note_put_on();
-  void go_as_put(double dt, double since,
-                 const std::function<void(const Eigen::AlignedBox3d&)>& stands_again);
+  void note_inferred();
+  void take_inferred(std::vector<Noted> inferred);
+  void go_as_inferred(double dt, double since,
+                      const std::function<void(const Eigen::AlignedBox3d&)>& stands_again);
   void hold(std::int32_t part);
   void let_go(std::int32_t part);
   void hold_anew(std::int32_t part);
@@ -197,13 +209,8 @@ class Ground {
   std::vector<Eigen::AlignedBox3d> bounds_;         // of each part, world
   std::vector<std::int32_t> free_parts_;
   std::size_t parts_used_ = 0, moving_ = 0;
-  std::vector<GroundId> put_on_;  // parts with such a note
-  struct Noted {
-    GroundId id;
-    PutOn put_on;
-    GroundPose pose;
-  };
-  std::vector<Noted> put_on_before_;     // the step that begin_step began
+  std::vector<GroundId> inferred_;       // parts with an inferred motion
+  std::vector<Noted> inferred_before_;   // as it was before begin_step()
   bool began_ = false;                   // a step that may be undone
   std::vector<GroundId> moved_, going_;  // with a velocity: for the step to come, and for this one
   std::vector<std::pair<GroundId, GroundPose>> was_put_;  // what has gone on and comes back

@@ -1,5 +1,6 @@
 // Collision detection of one OdeWorld: bodies against planes, the other bodies, the ground and the caller's
-// geoms.
+// geoms. collision_ode.cpp has who meets whom, collision_ground_ode.cpp the planes, boxes and meshes of the
+// ground.
 #pragma once
 
 #include <memory>
