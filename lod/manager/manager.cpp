@@ -1,3 +1,9 @@
+// A step, top down:
+// - step() takes it at once (step_part), or a long one in parts (step_divided). A part is begin_stages
+// (stages
+//   1 to 3), StepLevels::step_full (4) and end_stages (5).
+// - before_world_step() and after_world_step() do the same around the caller's own world step, which is 4.
+// Around either, begin_lists() and finish_lists() keep what moved(), woke() and the like tell of the step.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,13 +21,13 @@
 namespace lodestone {
 namespace {
 
-constexpr double kLongestPart = 0.1;  // s, of a step
+constexpr double kLongestPart = 0.1;  // s: a longer step is divided
 
-// Whether costs are learnt, and bound.
+// Whether the policy has a budget: then costs are measured and learnt.
 bool is_budgeted(const PolicySettings& policy) { return !limits_of(policy); }
 
-/// Of a statistical stage that took `ms` in all.
-void add_statistical(const Levels& levels, double ms, StepMeasurement& measured) {
+/// Adds what stage 3 cost, `ms` in all: each rung's part to that rung, the rest to nobody's.
+void add_statistical_cost(const Levels& levels, double ms, StepMeasurement& measured) {
   if (levels.statistical && levels.statistical->size() > 0) {
     measured.rungs_ms[std::size_t(Rung::tables)] = levels.statistical->cost().tables_ms;
     measured.rungs_ms[std::size_t(Rung::support)] = levels.statistical->cost().support_ms;
@@ -29,13 +35,13 @@ void add_statistical(const Levels& levels, double ms, StepMeasurement& measured)
   measured.others_ms += std::max(0.0, ms - measured.total_of_rungs_ms());
 }
 
-// Ground that was moved for a step goes on through its parts, and after the last is back.
-class GoingGround {
+// In a divided step ground that was moved for it moves on from part to part, and is put back after the last.
+class GroundInParts {
  public:
-  explicit GoingGround(Levels& levels) : levels_(levels) {}
-  ~GoingGround() { levels_.ground.come_back(), levels_.full.go_on(0.0); }
-  GoingGround(const GoingGround&) = delete;
-  GoingGround& operator=(const GoingGround&) = delete;
+  explicit GroundInParts(Levels& levels) : levels_(levels) {}
+  ~GroundInParts() { levels_.ground.come_back(), levels_.full.go_on(0.0); }
+  GroundInParts(const GroundInParts&) = delete;
+  GroundInParts& operator=(const GroundInParts&) = delete;
   void go_on(double gone) const { levels_.ground.go_on(), levels_.full.go_on(gone); }
 
  private:
@@ -75,7 +81,7 @@ void Manager::before_world_step(double dt) {
   const StageZones zones(impl.profile, impl.report.times);
   impl.follow_gravity();
   impl.begin_lists();
-  const Impl::Undo undo(impl);
+  const Impl::UndoOnThrow undo(impl);
   impl.begin_stages(dt, dt, WorldStepBy::caller);  // 1 to 3; 4 is the caller's own world step
   impl.step_levels.begin_callers_step(dt);
   impl.waits_for_world_step = true;
@@ -122,10 +128,10 @@ void Manager::Impl::follow_gravity() {
   levels.set_gravity(gravity);
 }
 
-// The report is that of all parts together. Forces last as long as all of them.
+// The report is that of all parts together. Forces that were given for the step act in each part.
 void Manager::Impl::step_divided(double dt, int parts) {
   const BodyTable::Forces forces = levels.bodies.forces();
-  const GoingGround ground(levels);
+  const GroundInParts ground(levels);
   StepReport sum;
   for (int i = 0; i < parts; ++i) {
     if (i > 0) ground.go_on(i * (dt / parts));
@@ -144,7 +150,7 @@ void Manager::Impl::step_divided(double dt, int parts) {
   ++report.counters.divided_steps;
 }
 
-Manager::Impl::Undo::~Undo() {
+Manager::Impl::UndoOnThrow::~UndoOnThrow() {
   if (std::uncaught_exceptions() == exceptions_) {
     impl_.levels.ground.keep_step();
     return;
@@ -154,13 +160,13 @@ Manager::Impl::Undo::~Undo() {
   impl_.levels.look_away();
   impl_.levels.ground.undo_step();
   BodyTable& bodies = impl_.levels.bodies;
-  // they are looked at anew in the step to come
+  // the policy is to be asked about them anew in the next step
   for (std::uint32_t body = 0; body < bodies.indices(); ++body)
     bodies.level(body).looked_at = std::min(bodies.level(body).looked_at, before_.step);
 }
 
 void Manager::Impl::step_part(double dt, double since) {
-  const Undo undo(*this);
+  const UndoOnThrow undo(*this);
   begin_stages(dt, since, WorldStepBy::manager);  // 1 choose, 2 transfer, 3 statistical rungs
   step_levels.step_full(dt, report);              // 4 full level
   end_stages();                                   // 5 report
@@ -195,7 +201,7 @@ void Manager::Impl::begin_report(double dt) {
   underway.emplace(Underway{dt, ThreadLaps(clocked)});
 }
 
-// What he has put, moved or taken away since the last step.
+// Takes over what the caller has put, moved or taken away since the last step.
 void Manager::Impl::follow_caller(double dt, double since) {
   levels.follow_callers_space(dt, since);
   levels.ground.begin_step(dt, since, [&](const Eigen::AlignedBox3d& box) { levels.wake_piled_in(box); });
@@ -213,7 +219,7 @@ std::optional<RungChanges> Manager::Impl::choose_rungs() {
   return rung_changes;
 }
 
-// Before anything is moved: they may not be there.
+// Gets the signatures that the changes need before anything is moved, since this may throw.
 void Manager::Impl::find_signatures(const RungChanges& rung_changes) {
   std::vector<std::uint32_t> to_full;
   for (const auto* list : {&rung_changes.demote, &rung_changes.promote})
@@ -230,18 +236,18 @@ void Manager::Impl::find_signatures(const RungChanges& rung_changes) {
       find_signature(levels, newcomers[i].index, newcomers[i].rung);
 }
 
-// 3 statistical rungs and their contacts with full bodies
+// 3 statistical rungs, and their contacts with full bodies
 void Manager::Impl::step_statistical(double dt, WorldStepBy by) {
   if (levels.statistical) levels.statistical->set_log(events.log());
   step_levels.step_statistical(dt, by, report);
   if (levels.statistical) choose.note_carriers(levels.statistical->carriers());
   if (!choose.groups().empty()) move_bodies.bring_back_woken(Groups::Return::as_it_slept, report);
-  add_statistical(levels, underway->laps.lap_ms(), underway->measured);
-  // for 4: ODE is to tell of touches that events want
+  add_statistical_cost(levels, underway->laps.lap_ms(), underway->measured);
+  // for 4: ODE is to record touches where events are wanted
   if (levels.full.world()) levels.full.world()->record_touches(events.wanted());
 }
 
-// 4 full level: what it has told of its step
+// 4 full level: takes over its times and touches
 void Manager::Impl::take_over_full() {
   underway->measured.rungs_ms[std::size_t(Rung::full)] = underway->laps.lap_ms();
   report.times.total_ms += report.times.full_ms;

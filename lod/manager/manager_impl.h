@@ -29,8 +29,8 @@ struct Manager::Impl {
   explicit Impl(const ManagerSettings& settings);
   Impl(dxWorld* world, dxSpace* space, const ManagerSettings& settings);
 
-  std::shared_ptr<JobRunner> jobs;  // behind the one that the levels have, so that it can be changed
-  std::shared_ptr<CallersJobs> callers_jobs;  // around these in a step, where they are the caller's
+  std::shared_ptr<JobRunner> jobs;  // the levels' JobRunner calls this one, so that it can be replaced
+  std::shared_ptr<CallersJobs> callers_jobs;  // around a caller's jobs in a step; null: they are oneTBB's
   Levels levels;
   CostModel costs;
   Choose choose;
@@ -56,35 +56,36 @@ struct Manager::Impl {
   dxWorld* callers_world = nullptr;
 
   void set_up(const ManagerSettings& settings);
-  /// All that the next steps depend on, but for what its statistical bodies move by: `signatures`, which
-  /// stand before it.
+  /// All that the next steps depend on, but for the `signatures` of its statistical bodies, which are
+  /// archived before it.
   void archive(StateArchive& a, std::span<const std::shared_ptr<const Signature>> signatures);
-  /// Does what a chunk of a recording tells, but for steps.
+  /// Repeats the call that a chunk of a recording tells of, but for steps.
   void do_call(Manager& manager, Call call, StateArchive& chunk,
                std::span<const std::shared_ptr<const Shape>> shapes);
   std::uint32_t index_of(BodyId body) const { return levels.bodies.index_of(body); }
-  /// The caller may have changed it in a world of his.
+  /// In a caller's world, takes over its gravity where he has changed it.
   void follow_gravity();
   void step_divided(double dt, int parts);
-  /// Stages 1 to 5, for at most .1 s.
+  /// Stages 1 to 5, for at most .1 s; `since`: see begin_stages.
   void step_part(double dt, double since);
-  /// Where stages throw while it lasts, nothing has moved, and the report is that of the step before.
-  class Undo {
+  /// If a stage throws while it lasts, makes the step none: the report is that of the step before, ground is
+  /// where it was, and every body is asked about anew. (Stages throw only before they have moved a body.)
+  class UndoOnThrow {
    public:
-    explicit Undo(Impl& impl) : impl_(impl), before_(impl.report) {}
-    ~Undo();
-    Undo(const Undo&) = delete;
-    Undo& operator=(const Undo&) = delete;
+    explicit UndoOnThrow(Impl& impl) : impl_(impl), before_(impl.report) {}
+    ~UndoOnThrow();
+    UndoOnThrow(const UndoOnThrow&) = delete;
+    UndoOnThrow& operator=(const UndoOnThrow&) = delete;
 
    private:
     Impl& impl_;
     const StepReport before_;
     const int exceptions_ = std::uncaught_exceptions();
   };
-  /// Stages 1 to 3, before the world's step. `since`: s, in which the caller put geoms and ground where they
-  /// are; 0: in a later part of a divided step.
+  /// Stages 1 to 3, before the world's step. `since`: s, the time in which the caller has moved geoms and
+  /// ground to where they are; 0: this is a later part of a divided step, and he has not.
   void begin_stages(double dt, double since, WorldStepBy by);
-  /// What stage 4 leaves to be taken over, and stage 5.
+  /// Takes over what stage 4 came to, and does stage 5.
   void end_stages();
   void begin_report(double dt);
   void follow_caller(double dt, double since);
