@@ -106,7 +106,7 @@ void ChangeQueue::add(const Ranked& by_distance, Target target) {
 
 void ChangeQueue::hold_or_queue(const Ranked& wish, std::vector<Ranked>& queue) {
   const LevelCandidate& c = candidate(wish);
-  if (c.frames_since_change >= settings_.min_dwell_frames) return queue.push_back(wish);
+  if (c.dwell_left == 0) return queue.push_back(wish);
   decision_.reasons[std::size_t(wish.index)] = Rule::dwell;
   held_by_dwell_[std::size_t(c.rung)] += places_of(c, c.rung);
 }

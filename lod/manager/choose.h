@@ -78,6 +78,8 @@ class Choose {
   LevelCandidate seen(std::uint32_t body) const;
   /// Of a body as it is now.
   Activity activity(std::uint32_t body) const;
+  /// Steps for which a body keeps its rung.
+  std::int32_t dwell_left(std::uint32_t body) const;
   bool in_view(const Vec3& center, double radius) const;
   /// px: diameter of its bounding sphere in the picture where it is largest; 0 without viewpoints.
   double pixels(const LevelCandidate& seen) const;

@@ -73,6 +73,11 @@ LevelCandidate Choose::seen(std::uint32_t body) const {
           .rung = level.rung};
 }
 
+std::int32_t Choose::dwell_left(std::uint32_t body) const {
+  const std::int64_t since = levels_.now - levels_.bodies.level(body).changed_at;
+  return std::int32_t(std::max<std::int64_t>(0, policy_.min_dwell_frames - since));
+}
+
 LevelCandidate Choose::make_candidate(std::uint32_t body, RungSet open, bool asleep) {
   const BodyLevel& level = levels_.bodies.level(body);
   const BodyRecord& record = levels_.bodies[body];
@@ -84,8 +89,7 @@ LevelCandidate Choose::make_candidate(std::uint32_t body, RungSet open, bool asl
                            .decided_by = rule_for_one(level),
                            .newcomer = level.newcomer,
                            .put_off = level.put_off};
-  candidate.frames_since_change = std::int32_t(
-      std::min<std::int64_t>(levels_.now - level.changed_at, LevelCandidate{}.frames_since_change));
+  candidate.dwell_left = dwell_left(body);
   if (record.statistical)
     candidate.position =
         levels_.statistical->position(record.statistical);  // all that it takes, of most bodies

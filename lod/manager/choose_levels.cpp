@@ -131,7 +131,7 @@ class PolicyWishes {
       else if (is_out_of_the_picture(c))
         queue_.add({kInfinity, i}, {c.open.lowest(), Rule::out_of_view, room.over()});
       else
-        (may_be_full_now(c, settings_.min_dwell_frames) ? may_be_full : others)
+        (may_be_full_now(c) ? may_be_full : others)
             .push_back({rank_distance(c, views_, settings_.hysteresis), i});
     }
     share_out(room, std::move(may_be_full), std::move(others));
@@ -147,8 +147,7 @@ class PolicyWishes {
       wanted = share_by_error(candidates_, must_be_full_, {room.keep, room.grow},
                               {.most_full = settings_.most_full,
                                .most_support = settings_.most_support,
-                               .hysteresis = settings_.hysteresis,
-                               .min_dwell_frames = settings_.min_dwell_frames});
+                               .hysteresis = settings_.hysteresis});
     for (std::int32_t i = 0; i < count(); ++i) {
       const LevelCandidate& c = candidates_[std::size_t(i)];
       const Rung lowest = c.open.lowest(), to = wanted.empty() ? lowest : wanted[std::size_t(i)];
@@ -168,7 +167,7 @@ class PolicyWishes {
     std::vector<Ranked> may_be_full;
     for (std::int32_t i = 0; i < count(); ++i) {
       const LevelCandidate& c = candidates_[std::size_t(i)];
-      if (may_be_full_now(c, settings_.min_dwell_frames) && !is_out_of_the_picture(c))
+      if (may_be_full_now(c) && !is_out_of_the_picture(c))
         may_be_full.push_back({rank_distance(c, views_, settings_.hysteresis), i});
     }
     return share_full(candidates_, std::move(may_be_full), must_be_full_, room.for_full(has_ring()),

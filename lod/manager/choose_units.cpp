@@ -75,7 +75,7 @@ void add(const LevelCandidate& member, const Views& views, Measure measure, Leve
   unit.passing += member.passing;
   unit.mesh = std::max(unit.mesh, member.mesh);  // one of them meets what is outside
   unit.asleep &= member.asleep;
-  unit.frames_since_change = std::min(unit.frames_since_change, member.frames_since_change);
+  unit.dwell_left = std::max(unit.dwell_left, member.dwell_left);
   if (unit.newcomer == member.newcomer)
     unit.rung = std::max(unit.rung, member.rung);
   else if (unit.newcomer)

@@ -24,7 +24,7 @@ struct LevelCandidate {
   PairWeights pairs_within = {};  ///< of one that stands for several, when they are full
   bool asleep = false;
   Vec3 motion = Vec3::Zero();  ///< m, of a full body in the next frame
-  std::int32_t frames_since_change = 1 << 30;
+  std::int32_t dwell_left = 0;  ///< steps for which it keeps its rung, unless it must leave it
   Rung rung = Rung::support;
   RungSet open = kEveryRung;
   Rule decided_by = Rule::forced;  ///< why only one rung is open, where that is so

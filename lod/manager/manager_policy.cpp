@@ -118,8 +118,7 @@ Why Manager::explain(BodyId body) const {
   const PolicySettings& policy = choose.policy();
   if (!limits_of(policy) && !counts_work(policy))
     why.cost_ms = impl_->costs.ms_of_one(level.rung, std::size_t(does));
-  why.dwell_left_frames = int(std::clamp<std::int64_t>(
-      policy.min_dwell_frames - (levels.now - level.changed_at), 0, policy.min_dwell_frames));
+  why.dwell_left_frames = choose.dwell_left(index);
   return why;
 }
 

@@ -33,7 +33,7 @@ void add_upgrades(const LevelCandidate& c, std::int32_t index, const ErrorShareL
                   std::vector<Upgrade>& upgrades) {
   if (c.decided()) return;
   const Rung lowest = c.open.lowest();
-  const bool full = may_be_full_now(c, limits.min_dwell_frames),
+  const bool full = may_be_full_now(c),
              between = lowest == Rung::tables && c.open.has(Rung::support);
   if (!between) {
     if (full) add_upgrade(c, index, lowest, Rung::full, limits.hysteresis, upgrades);

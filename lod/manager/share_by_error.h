@@ -19,7 +19,6 @@ struct ErrorRoom {
 struct ErrorShareLimits {
   std::int64_t most_full = 0, most_support = 0;
   double hysteresis = 0.0;
-  int min_dwell_frames = 0;
 };
 
 /// The rung of each candidate that the policy has a say in; the lowest of the others. Greedy: of all steps up

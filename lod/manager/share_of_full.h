@@ -35,9 +35,9 @@ inline constexpr std::size_t kPassedOver = 20;
 inline double raise(const LevelCandidate& c, Rung to) { return c.cost_at(to) - c.cost_at(c.open.lowest()); }
 
 /// One that has to wait gives room to others meanwhile.
-inline bool may_be_full_now(const LevelCandidate& c, int min_dwell_frames) {
+inline bool may_be_full_now(const LevelCandidate& c) {
   if (c.decided() || !c.open.has(Rung::full)) return false;
-  return c.present() == Rung::full || c.newcomer || (!c.put_off && c.frames_since_change >= min_dwell_frames);
+  return c.present() == Rung::full || c.newcomer || (!c.put_off && c.dwell_left == 0);
 }
 
 /// What full bodies cost, in the unit of the budget, above their lowest rungs.

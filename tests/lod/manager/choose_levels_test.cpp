@@ -39,11 +39,12 @@ Indices who(const std::vector<LevelDecision::Change>& changes) {
   return candidates;
 }
 
-void make_changes(const LevelDecision& decision, std::vector<LevelCandidate>& candidates) {
-  for (LevelCandidate& c : candidates) ++c.frames_since_change;
+void make_changes(const LevelDecision& decision, std::vector<LevelCandidate>& candidates,
+                  int min_dwell_frames = PolicySettings{}.min_dwell_frames) {
+  for (LevelCandidate& c : candidates) c.dwell_left = std::max(0, c.dwell_left - 1);
   for (const auto* changes : {&decision.demote, &decision.promote})
     for (const auto& [i, to] : *changes)
-      candidates[std::size_t(i)].rung = to, candidates[std::size_t(i)].frames_since_change = 0;
+      candidates[std::size_t(i)].rung = to, candidates[std::size_t(i)].dwell_left = min_dwell_frames;
 }
 
 std::int64_t count_on(Rung rung, const std::vector<LevelCandidate>& candidates) {
@@ -83,11 +84,11 @@ TEST(DistancePolicy, WithoutViewpointsEveryBodyIsStatistical) {
 
 TEST(Policy, DwellKeepsANewLevel) {
   std::vector<LevelCandidate> candidates{at(1), at(9, Rung::full)};
-  candidates[0].frames_since_change = candidates[1].frames_since_change = 29;
+  candidates[0].dwell_left = candidates[1].dwell_left = 1;
   const auto held = choose(candidates, by_distance());
   EXPECT_TRUE(held.promote.empty() && held.demote.empty());
   EXPECT_EQ(held.reasons, (std::vector{Rule::dwell, Rule::dwell}));
-  candidates[0].frames_since_change = candidates[1].frames_since_change = 30;
+  candidates[0].dwell_left = candidates[1].dwell_left = 0;
   const auto free = choose(candidates, by_distance());
   EXPECT_EQ(who(free.promote), Indices{0});
   EXPECT_EQ(who(free.demote), Indices{1});
@@ -118,7 +119,7 @@ TEST(Policy, ForcedBodiesWaitForNothing) {
   for (int i = 0; i < 10; ++i) {
     candidates.push_back(at(1000));
     candidates.back().open = {Rung::full};
-    candidates.back().frames_since_change = 0;
+    candidates.back().dwell_left = 30;
   }
   candidates.push_back(at(0, Rung::full));
   candidates.back().open = {Rung::support};
@@ -290,7 +291,7 @@ TEST(Policy, MostOnARungIsNeverExceededAndTheNearestAreThere) {
     for (int frame = 0; frame < 60; ++frame) {
       for (int i = 0; i < 40; ++i) candidates[std::size_t(i)].position.x() = 1 + std::abs(i - frame / 2);
       const auto decision = choose(candidates, settings);
-      make_changes(decision, candidates);
+      make_changes(decision, candidates, settings.min_dwell_frames);
       ASSERT_LE(count_on(Rung::full, candidates), 5) << budget << " frame " << frame;
       ASSERT_LE(count_on(Rung::support, candidates), 7) << budget << " frame " << frame;
     }
@@ -311,7 +312,7 @@ TEST(Policy, OfGroupsTheMostOnARungAreCountedByTheirBodies) {
     }
     for (int frame = 0; frame < 30; ++frame) {
       for (int i = 0; i < 20; ++i) groups[std::size_t(i)].position.x() = 1 + std::abs(i - frame / 2);
-      make_changes(choose(groups, settings), groups);
+      make_changes(choose(groups, settings), groups, settings.min_dwell_frames);
       ASSERT_LE(count_on(Rung::full, groups), 2) << budget << " frame " << frame;
       ASSERT_LE(count_on(Rung::support, groups), 3) << budget << " frame " << frame;
     }
@@ -321,12 +322,13 @@ TEST(Policy, OfGroupsTheMostOnARungAreCountedByTheirBodies) {
     EXPECT_EQ(choose(groups, settings).reasons[0], Rule::most_reached) << budget;
 
     settings.most_full = 4;  // and a lower limit takes the farther one down
-    make_changes(choose(groups, settings), groups);
+    make_changes(choose(groups, settings), groups, settings.min_dwell_frames);
     EXPECT_EQ(groups[14].rung, Rung::full) << budget;
     EXPECT_EQ(count_on(Rung::full, groups), 1) << budget;
 
     groups[14].bodies = 5;  // more than may be full: those behind it may
-    for (int frame = 0; frame < 5; ++frame) make_changes(choose(groups, settings), groups);
+    for (int frame = 0; frame < 5; ++frame)
+      make_changes(choose(groups, settings), groups, settings.min_dwell_frames);
     EXPECT_NE(groups[14].rung, Rung::full) << budget;
     EXPECT_EQ(count_on(Rung::full, groups), 1) << budget;
   }
@@ -349,7 +351,7 @@ TEST(Policy, WhereBothRungsAreTakenTheNearTakeThePlacesOfTheFar) {
           for (int frame = 0; frame < 20; ++frame) {
             const auto decision = choose(candidates, settings);
             ASSERT_LE(decision.promote.size() + decision.demote.size(), std::size_t(turns));
-            make_changes(decision, candidates);
+            make_changes(decision, candidates, settings.min_dwell_frames);
             ASSERT_LE(count_on(Rung::full, candidates), most);
             ASSERT_TRUE(asleep || count_on(Rung::support, candidates) <= most);
           }
@@ -377,7 +379,8 @@ TEST(Policy, AGroupThatFitsInNoOtherPlaceGoesByTheLowestRung) {
                                        on_ladder(2, Rung::support)};
     groups[0].bodies = 4, groups[1].bodies = groups[2].bodies = 2;
     EXPECT_EQ(choose(groups, settings).demote, (std::vector<LevelDecision::Change>{{0, Rung::tables}}));
-    for (int frame = 0; frame < 5; ++frame) make_changes(choose(groups, settings), groups);
+    for (int frame = 0; frame < 5; ++frame)
+      make_changes(choose(groups, settings), groups, settings.min_dwell_frames);
     EXPECT_EQ(groups[0].rung, Rung::support);
     EXPECT_EQ(groups[1].rung, Rung::full);
     EXPECT_EQ(groups[2].rung, Rung::full);
@@ -389,14 +392,14 @@ TEST(Policy, APlaceIsWaitedForThatAnotherLeavesAfterItsDwell) {
   settings.min_dwell_frames = 10;
   std::vector<LevelCandidate> candidates{on_ladder(21, Rung::full), on_ladder(22, Rung::support),
                                          on_ladder(1)};
-  candidates[1].frames_since_change = 5;
+  candidates[1].dwell_left = 5;
   for (int frame = 0; frame < 5; ++frame) {
     const auto decision = choose(candidates, settings);
     EXPECT_TRUE(decision.demote.empty() && decision.promote.empty());
     EXPECT_EQ(decision.reasons, (std::vector{Rule::queued, Rule::dwell, Rule::queued}));
-    make_changes(decision, candidates);
+    make_changes(decision, candidates, settings.min_dwell_frames);
   }
-  make_changes(choose(candidates, settings), candidates);
+  make_changes(choose(candidates, settings), candidates, settings.min_dwell_frames);
   EXPECT_EQ(candidates[0].rung, Rung::support);
   EXPECT_EQ(candidates[1].rung, Rung::tables);
   EXPECT_EQ(candidates[2].rung, Rung::full);
@@ -407,7 +410,7 @@ TEST(Policy, ASleeperTakesNoPlaceAtSupport) {
   settings.min_dwell_frames = 10;
   std::vector<LevelCandidate> candidates{on_ladder(21, Rung::full), on_ladder(22, Rung::support),
                                          on_ladder(1)};
-  candidates[1].frames_since_change = 5;
+  candidates[1].dwell_left = 5;
   candidates[1].asleep = true;
   const auto decision = choose(candidates, settings);
   EXPECT_EQ(decision.demote, (std::vector<LevelDecision::Change>{{0, Rung::support}}));
@@ -420,7 +423,7 @@ TEST(Policy, ALimitThatIsExceededIsKeptAtOnce) {
   for (int i = 0; i < 20; ++i) {
     candidates.push_back(at(5 + i, Rung::full));
     candidates.back().error = {30.0f, 20.0f, 10.0f};
-    candidates.back().frames_since_change = 0;
+    candidates.back().dwell_left = 30;
   }
   PolicySettings settings;
   settings.max_transitions_per_frame = 2, settings.most_full = 3;
@@ -452,7 +455,7 @@ TEST(BudgetPolicy, TheNearestAreFullTheNextSupportTheRestTables) {
 TEST(BudgetPolicy, OverItTheFarthestGoDownAtOnceWhateverDwellAndCap) {
   std::vector<LevelCandidate> candidates;
   for (int i = 0; i < 50; ++i) candidates.push_back(on_ladder(1 + i, Rung::full));
-  for (LevelCandidate& c : candidates) c.frames_since_change = 0;
+  for (LevelCandidate& c : candidates) c.dwell_left = 30;
   PolicySettings settings = by_budget(14.0);
   settings.max_transitions_per_frame = 1;
   make_changes(choose(candidates, settings), candidates);
@@ -503,7 +506,7 @@ TEST(BudgetPolicy, APairOfFullBodiesIsChargedBesidesThem) {
 
 TEST(BudgetPolicy, OfTwoFullBodiesThatComeTooCloseTheFartherGoesDownAtOnce) {
   std::vector<LevelCandidate> candidates = a_row(3);
-  for (LevelCandidate& c : candidates) c.rung = Rung::full, c.frames_since_change = 0;
+  for (LevelCandidate& c : candidates) c.rung = Rung::full, c.dwell_left = 30;
   candidates[2].position.x() += 5.0;
   const auto decision = choose_levels(candidates, kAtOrigin, by_budget(11.0), {.pair = 1e3});
   EXPECT_EQ(decision.demote, (std::vector<LevelDecision::Change>{{1, Rung::tables}}));
@@ -514,7 +517,7 @@ TEST(BudgetPolicy, OnlyAsManyGoDownAtOnceAsMust) {
   for (int i = 0; i < 20; ++i) candidates.push_back(at(30 - i, Rung::full));
   PolicySettings settings = by_budget(18.0);
   settings.max_transitions_per_frame = 0;
-  for (LevelCandidate& c : candidates) c.frames_since_change = 0;
+  for (LevelCandidate& c : candidates) c.dwell_left = 30;
   EXPECT_EQ(who(choose(candidates, settings).demote), (Indices{0, 1}));
 }
 
@@ -523,7 +526,7 @@ TEST(BudgetPolicy, OverItThoseAwakeGoDownBeforeTheSleepers) {
   for (int i = 0; i < 20; ++i) {
     candidates.push_back(at(1 + i, Rung::full));
     candidates.back().asleep = i % 2 == 1;
-    candidates.back().frames_since_change = 0;
+    candidates.back().dwell_left = 30;
     if (candidates.back().asleep) candidates.back().cost[std::size_t(Rung::full)] = 0.5f;  // a reserve
   }
   PolicySettings settings = by_budget(12.6);

@@ -176,21 +176,21 @@ TEST(ShareFull, TiesGoToTheLowerIndex) {
 
 TEST(MayBeFullNow, WaitsForItsDwell) {
   LevelCandidate c{.rung = Rung::support};
-  c.frames_since_change = 29;
-  EXPECT_FALSE(may_be_full_now(c, 30));
-  c.frames_since_change = 30;
-  EXPECT_TRUE(may_be_full_now(c, 30));
+  c.dwell_left = 1;
+  EXPECT_FALSE(may_be_full_now(c));
+  c.dwell_left = 0;
+  EXPECT_TRUE(may_be_full_now(c));
   c.put_off = true;
-  EXPECT_FALSE(may_be_full_now(c, 30));
+  EXPECT_FALSE(may_be_full_now(c));
   c.newcomer = true;
-  EXPECT_TRUE(may_be_full_now(c, 30));
+  EXPECT_TRUE(may_be_full_now(c));
   c = LevelCandidate{.rung = Rung::full};
-  c.frames_since_change = 0, c.put_off = true;
-  EXPECT_TRUE(may_be_full_now(c, 30));
+  c.dwell_left = 30, c.put_off = true;
+  EXPECT_TRUE(may_be_full_now(c));
   c.open = {Rung::tables, Rung::support};
-  EXPECT_FALSE(may_be_full_now(c, 30));
+  EXPECT_FALSE(may_be_full_now(c));
   c.open = {Rung::full};
-  EXPECT_FALSE(may_be_full_now(c, 30));  // it is, without a choice
+  EXPECT_FALSE(may_be_full_now(c));  // it is, without a choice
 }
 
 }  // namespace
