@@ -33,25 +33,40 @@ struct HullSeparation {
   bool flush;  ///< face lies on face, the line of the centres goes through both, and on these both stand
                ///< firmly
 };
-/// m along the normal of the lower one's face that looks up the most, negative: overlap. What passes over it
-/// is apart from it that way, though the line of the centres leaves through a side.
-struct SeparationUpwards {
-  F3 normal;  ///< from the second to the first
+/// By a face of one of them: `out` of it, and m along that, negative: overlap.
+struct FaceSeparation {
+  F3 out;
   float gap;
 };
+/// `line` is from the one to the other; `face` is its own, unturned.
+LODESTONE_INLINE FaceSeparation separate_by_face(const float* heights, const Row& face, const MappedHull& one,
+                                                 const MappedHull& other, F3 line, float distance) {
+  const F3 out = turned(one.turn, {face.x, face.y, face.z});
+  return {out, distance * dot(out, line) - face.w -
+                   read_map(heights, other.map, place_in_map(turned(back(other.turn), -1.0f * out)))};
+}
+
+struct SeparationUpwards {
+  F3 normal;  ///< from the second to the first
+  float gap;  ///< m along it, negative: overlap
+};
+/// By the lower one's face that looks up the most, or the upper one's that looks down the most, whichever
+/// keeps them farther apart. What passes over the other is apart from it that way, though the line of the
+/// centres leaves through a side.
 LODESTONE_INLINE SeparationUpwards separate_upwards(const float* heights, const Row* faces,
                                                     const MappedHull& first, const MappedHull& second,
                                                     F3 line, float distance, F3 up) {
-  const bool on_second = dot(line, up) > 0.0f;
-  const auto pick = [&](const MappedHull& a, const MappedHull& b) {
-    return MappedHull{choose(on_second, a.map, b.map),
-                      {choose(on_second, a.turn.w, b.turn.w), choose(on_second, a.turn.v, b.turn.v)}};
+  const F3 to_first = choose(dot(line, up) > 0.0f, up, -1.0f * up);  // up or down
+  const auto face_of = [&](const MappedHull& one, F3 way) -> const Row& {
+    return faces[one.map + place_in_map(turned(back(one.turn), way)).nearest];
   };
-  const MappedHull lower = pick(second, first), upper = pick(first, second);
-  const Row& face = faces[lower.map + place_in_map(turned(back(lower.turn), up)).nearest];
-  const F3 out = turned(lower.turn, {face.x, face.y, face.z}), normal = choose(on_second, 1.0f, -1.0f) * out;
-  return {normal, distance * dot(normal, line) - face.w -
-                      read_map(heights, upper.map, place_in_map(turned(back(upper.turn), -1.0f * out)))};
+  const FaceSeparation by_first = separate_by_face(heights, face_of(first, -1.0f * to_first), first, second,
+                                                   -1.0f * line, distance),
+                       by_second = separate_by_face(heights, face_of(second, to_first), second, first, line,
+                                                    distance);
+  const bool of_second = by_second.gap >= by_first.gap;
+  return {choose(of_second, by_second.out, -1.0f * by_first.out),
+          choose(of_second, by_second.gap, by_first.gap)};
 }
 
 /// What says whether one passes over the other.
@@ -60,30 +75,27 @@ struct Passing {
   F3 way;      ///< m, of the first, seen from the second, in the time that is looked at
   float hair;  ///< m: an overlap that is none
 };
-/// The best of four separating axes: the line and the normals of the two faces, so that what lies on a face
+/// The best of five separating axes: the line and the normals of the two faces, so that what lies on a face
 /// is held by that face; or upwards, where that is better still, or keeps them apart to the end of the way.
 /// `unsteady` is that of the kinds (SphereKinds).
 LODESTONE_INLINE HullSeparation separate_hulls(const float* heights, const Row* faces, const float* unsteady,
                                                const MappedHull& first, const MappedHull& second, F3 line,
                                                float distance, const LineSeparation& along,
                                                const Passing& passing) {
-  const Row &by_first = faces[along.first], &by_second = faces[along.second];
-  const F3 of_first = -1.0f * turned(first.turn, {by_first.x, by_first.y, by_first.z}),
-           of_second = turned(second.turn, {by_second.x, by_second.y, by_second.z});
-  const float gap_first = distance * dot(of_first, line) - by_first.w -
-                          read_map(heights, second.map, place_in_map(turned(back(second.turn), of_first))),
-              gap_second =
-                  distance * dot(of_second, line) - by_second.w -
-                  read_map(heights, first.map, place_in_map(turned(back(first.turn), -1.0f * of_second)));
+  const FaceSeparation by_first = separate_by_face(heights, faces[along.first], first, second, -1.0f * line,
+                                                   distance),
+                       by_second =
+                           separate_by_face(heights, faces[along.second], second, first, line, distance);
   const SeparationUpwards upwards =
       separate_upwards(heights, faces, first, second, line, distance, passing.up);
-  const float gap = most(most(gap_first, gap_second), along.gap);
-  const bool of_line = along.gap > most(gap_first, gap_second);
-  const F3 normal = choose(of_line, line, choose(gap_first > gap_second, of_first, of_second));
+  const F3 of_first = -1.0f * by_first.out;
+  const float gap = most(most(by_first.gap, by_second.gap), along.gap);
+  const bool of_line = along.gap > most(by_first.gap, by_second.gap);
+  const F3 normal = choose(of_line, line, choose(by_first.gap > by_second.gap, of_first, by_second.out));
   const float then = upwards.gap + least(0.0f, dot(passing.way, upwards.normal));
   const bool over =
       (dot(upwards.normal, normal) < kFlushCosine) & ((then > -passing.hair) | (upwards.gap > gap));
-  const float cosine = choose(of_line | over, -1.0f, dot(of_first, of_second));
+  const float cosine = choose(of_line | over, -1.0f, dot(of_first, by_second.out));
   return {choose(over, upwards.normal, normal), choose(over, upwards.gap, gap),
           cosine > kFlushCosine + unsteady[along.first] + unsteady[along.second]};
 }

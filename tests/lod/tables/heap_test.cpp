@@ -65,6 +65,26 @@ TEST(TablesHeap, WhatIsPouredSleeps) {
   }
 }
 
+// One that leaned over another's end met it once it was deep in it, was lifted out and fell again, for ever:
+// in one pour of ten.
+TEST(TablesHeap, PostsThatLeanOverEachOtherSleep) {
+  const auto post = box_shape({0.1, 0.1, 0.5});
+  const auto signature = coarse_signature(*post, {});
+  for (const std::uint64_t seed : {12u, 26u, 33u, 34u, 39u, 52u}) {
+    Manager manager({.signatures = [&](const Shape&, const ContactLaw&) { return signature; }});
+    for (const HalfSpace& plane : make_bin(1.6)) manager.add_plane(plane.normal, plane.offset);
+    RandomStream random(9, seed, 0);
+    std::vector<BodyId> bodies;
+    for (int i = 0; i < 40; ++i)
+      bodies.push_back(add(manager, post,
+                           {.position = {0.6 * (i % 3 - 1), 0.6 * (i / 3 % 3 - 1), 0.6 + 0.7 * (i / 9)},
+                            .orientation = random.orientation()},
+                           LevelChoice::tables));
+    run(manager, 12.0);
+    for (const BodyId body : bodies) EXPECT_TRUE(manager.asleep(body)) << seed << ": " << body.index;
+  }
+}
+
 // What the ground gives against a blow is no load: begun with again in the next step it threw balls into the
 // air, with up to 3 kJ out of nothing.
 TEST(TablesHeap, LivelyBallsGainNothing) {
