@@ -49,7 +49,8 @@ std::optional<PairContact> pass_over(const PairBody& first, const PairBody& seco
   const auto passed = find_passed_normal(first, second, contact, way);
   if (!passed || contact.normal.dot(*passed) > kSameWay) return contact;
   const HullGap along = measure_hull_gap(placed_hull(first), placed_hull(second), *passed);
-  const PairContact with_face{*passed, along.gap, clip_features(first, second, along, {})};
+  PairContact with_face{*passed, along.gap, clip_features(first, second, along, {})};
+  for (ManifoldPoint& p : with_face.manifold.points) p.point += second.position;  // they were from its centre
   const bool is_over = with_face.manifold.count > 0 && along.gap <= way.hair;
   if (!is_over && contact.gap < 0.0) return contact;
   axis = along;

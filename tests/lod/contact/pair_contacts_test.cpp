@@ -64,6 +64,38 @@ TEST_F(LInL, BothBodiesMeetAlikeWhicheverIsFirst) {
 
 // A crate that overhangs a step of a wide flight of stairs by a corner: the step's other side, .2 m below, is
 // within a hundredth of its length.
+// A box goes over the rim of a leg, a hair below its top face: whose points are those of that face, on the
+// box.
+TEST_F(LInL, APieceThatIsPassedOverIsMetWhereItIs) {
+  const Shape box = make_shape("box", make_box({0.06, 0.06, 0.06}));
+  Vec3 low = Vec3::Constant(1e9), high = -low;
+  const Shape& leg = l_.pieces[0];
+  for (const Vec3& v : leg.hull.vertices) {
+    low = low.cwiseMin(v + leg.center_of_mass_in_mesh);
+    high = high.cwiseMax(v + leg.center_of_mass_in_mesh);
+  }
+  int passed = 0;  // points on the face
+  for (const int axis : {0, 1})
+    for (const double side : {-1.0, 1.0}) {
+      Vec3 position = 0.5 * (low + high), way = Vec3::Zero();
+      position.z() = high.z() + 0.03 - 1e-4;
+      position[axis] = side < 0.0 ? low[axis] - 0.03 + 5e-5 : high[axis] + 0.03 - 5e-5;
+      way[axis] = -0.02 * side;
+      HullGap nowhere{.normal = Vec3::Zero()};
+      std::vector<KnownGap> nothing;
+      HullContactSearch search;
+      search.way = PairWay{.first = way, .hair = 3e-4};
+      find_pair_contacts(at(box, position), at(l_, Vec3::Zero()), nowhere, nothing, kMargin, search);
+      for (const PairContact& contact : search.contacts)
+        for (int i = 0; i < contact.manifold.count; ++i) {
+          const Vec3& point = contact.manifold.points[std::size_t(i)].point;
+          EXPECT_LT((point - position).cwiseAbs().maxCoeff(), 0.0305) << axis << ' ' << side;
+          passed += contact.normal.z() > 0.99;
+        }
+    }
+  EXPECT_GT(passed, 0);
+}
+
 TEST(PairContacts, AGreatSlabIsTouchedOnOneSide) {
   const Shape crate = make_shape("crate", make_box({0.2, 0.3, 0.4})),
               step = make_shape("step", make_box({0.35, 80.0, 0.2}));
