@@ -153,9 +153,11 @@ ChangeQueue::Turns ChangeQueue::put_in_order() {
 
 // Whoever goes up makes pairs with these, too, whether or not the policy wants them to be full.
 void ChangeQueue::note_staying_full() {
-  for (std::size_t i = 0; i < candidates_.size(); ++i)
-    if (const LevelCandidate& c = candidates_[i]; !c.decided() && c.present() == Rung::full && !goes_down_[i])
-      stays_full_.add(c);
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const LevelCandidate& c = candidates_[i];
+    const bool stays = c.decided() ? c.open.has(Rung::full) : c.present() == Rung::full && !goes_down_[i];
+    if (stays) stays_full_.add(c);
+  }
 }
 
 void ChangeQueue::promote_at_once() {

@@ -77,7 +77,7 @@ class ChangeQueue {
   const PolicySettings& settings_;
   const StepOverhead& overhead_;
   double room_ = kInfinity;                  // left of the budget, in its unit
-  FullBill stays_full_;                      // of those that are full for now, by their own policy
+  FullBill stays_full_;                      // of those that are full for now
   std::vector<float> price_of_pairs_;        // of each candidate that is full, or is to be
   std::vector<char> goes_down_;              // of each candidate: leaves the full level, or changes below it
   std::array<std::int64_t, kRungs> places_;  // for more bodies on each rung; negative: too many there

@@ -504,6 +504,22 @@ TEST(BudgetPolicy, APairOfFullBodiesIsChargedBesidesThem) {
   EXPECT_EQ(promoted(11.0, {.spike = 1e3}, true), 9u);  // no pair of sleepers has a spike
 }
 
+// Others take up the room for the pair until their dwell is over.
+TEST(BudgetPolicy, APairWithOneThatMustBeFullIsChargedToo) {
+  for (const RungSet open : {kEveryRung, RungSet{Rung::full}}) {
+    std::vector<LevelCandidate> candidates{on_ladder(1, Rung::full), on_ladder(1.5, Rung::support)};
+    candidates[0].open = open;
+    for (LevelCandidate& c : candidates) c.radius = 0.5, c.mesh = 1.0f;
+    for (int i = 0; i < 6; ++i) {
+      candidates.push_back(on_ladder(50 + 10 * i, Rung::full));
+      candidates.back().dwell_left = 30;
+    }
+    const auto decision = choose_levels(candidates, kAtOrigin, by_budget(10.0), {.pair = 5.0});
+    EXPECT_TRUE(decision.promote.empty());
+    EXPECT_EQ(decision.reasons[1], Rule::queued);
+  }
+}
+
 TEST(BudgetPolicy, OfTwoFullBodiesThatComeTooCloseTheFartherGoesDownAtOnce) {
   std::vector<LevelCandidate> candidates = a_row(3);
   for (LevelCandidate& c : candidates) c.rung = Rung::full, c.dwell_left = 30;
