@@ -64,7 +64,7 @@ struct StepContacts {
 struct HeldPoints {
   std::array<std::pair<TouchingPoint, Vec3>, StepContacts::kCapacity> impulse;  ///< N s over mass
   int count = 0;
-  bool rolls = false;   ///< onto a vertex that was none of these
+  bool rolls = false;   ///< onto a vertex that was none of these, in any contact step since the first
   bool wedged = false;  ///< between planes that look against each other
   Vec3 find(const TouchingPoint& point, const Shape& shape) const {
     for (int i = 0; i < count; ++i)
