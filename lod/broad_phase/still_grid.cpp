@@ -85,6 +85,18 @@ std::optional<std::uint64_t> StillGrid::arrivals_near(const Vec3& center, double
   return sum;
 }
 
+bool StillGrid::find_lived_in(std::int32_t x0, std::int32_t x1, std::int32_t y0, std::int32_t y1,
+                              std::int32_t z, std::int32_t level, std::vector<std::uint8_t>& lived_in) const {
+  lived_in.clear();
+  bool any = false;
+  for (std::int32_t y = y0; y <= y1; ++y)
+    for (std::int32_t x = x0; x <= x1; ++x) {
+      lived_in.push_back(groups_[place_of_group({x, y, z, level})]);
+      any |= lived_in.back() != 0;
+    }
+  return any;
+}
+
 // Cells that nobody lies in any more are left out.
 void StillGrid::grow() {
   std::vector<Cell> old = std::move(cells_);

@@ -84,6 +84,9 @@ class StillGrid {
   void visit_few(const Range& range, std::int32_t level, const Found& found) const;
   template <class Found>
   void visit_all(const Range& range, std::int32_t level, const Found& found) const;
+  // Whether anybody lies in these groups, one by one, x first; whether in any of them.
+  bool find_lived_in(std::int32_t x0, std::int32_t x1, std::int32_t y0, std::int32_t y1, std::int32_t z,
+                     std::int32_t level, std::vector<std::uint8_t>& lived_in) const;
   template <class Found>
   void visit(const Cell& cell, const Found& found) const {
     for (std::uint32_t body = cell.head; body != kNone; body = next_[body]) found(body);
@@ -154,10 +157,22 @@ void StillGrid::visit_few(const Range& range, std::int32_t level, const Found& f
 // In the same order.
 template <class Found>
 void StillGrid::visit_all(const Range& range, std::int32_t level, const Found& found) const {
-  for (std::int32_t z = range.low[2]; z <= range.high[2]; ++z)
+  thread_local std::vector<std::uint8_t> lived_in;  // groups of a layer, x first
+  const std::int32_t x0 = range.low[0] >> 2, y0 = range.low[1] >> 2, x1 = range.high[0] >> 2,
+                     y1 = range.high[1] >> 2;
+  const auto width = std::size_t(x1 - x0 + 1);
+  bool any = false;
+  for (std::int32_t z = range.low[2]; z <= range.high[2]; ++z) {
+    if (z == range.low[2] || z % 4 == 0) any = find_lived_in(x0, x1, y0, y1, z >> 2, level, lived_in);
+    if (!any) continue;
     for (std::int32_t y = range.low[1]; y <= range.high[1]; ++y)
-      for (std::int32_t x = range.low[0]; x <= range.high[0]; ++x)
-        visit(cells_[place_of({x, y, z, level})], found);
+      for (std::int32_t group = x0; group <= x1; ++group) {
+        if (lived_in[std::size_t((y >> 2) - y0) * width + std::size_t(group - x0)] == 0) continue;
+        const std::int32_t begin = std::max(range.low[0], 4 * group),
+                           end = std::min(range.high[0], 4 * group + 3);
+        for (std::int32_t x = begin; x <= end; ++x) visit(cells_[place_of({x, y, z, level})], found);
+      }
+  }
 }
 
 }  // namespace lodestone
