@@ -74,11 +74,7 @@ void SubstepPlan::mark_followers(const ContactScene& scene, const NearPairs& pai
            may_strike(scene, scene.body(p), faces.of(slot), dt) ||
            std::ranges::binary_search(striking_, slot);
   };
-  following_of_.clear(), stopped_.clear();
-  for (const std::size_t i : following_)
-    for (const Participant p : {pairs[i].first, pairs[i].second})
-      if (p.is_statistical()) following_of_.emplace_back(p.index(), i);
-  std::ranges::sort(following_of_);
+  stopped_.clear();
   const auto meet = [&](std::size_t i) {
     const FoundPair& pair = pairs[i];
     ways_[i].along = std::max(scene.velocity(pair.first).norm(), scene.velocity(pair.second).norm()) * dt /
@@ -88,6 +84,12 @@ void SubstepPlan::mark_followers(const ContactScene& scene, const NearPairs& pai
   };
   for (const std::size_t i : following_)
     if (stops(pairs[i].first) || stops(pairs[i].second)) meet(i);
+  if (stopped_.empty()) return;
+  following_of_.clear();
+  for (const std::size_t i : following_)
+    for (const Participant p : {pairs[i].first, pairs[i].second})
+      if (p.is_statistical()) following_of_.emplace_back(p.index(), i);
+  std::ranges::sort(following_of_);
   while (!stopped_.empty()) {
     const std::size_t body = stopped_.back();
     stopped_.pop_back();
