@@ -82,7 +82,7 @@ void Collision::collide(Bodies& bodies, ContactJoints& joints, double h) {
   }
   woken_.clear(), waking_.assign(bodies.slots().size(), Waking::no);
   for (const Body& body : bodies.slots())
-    if (body.is_awake()) note_joined(bodies, body);
+    if (body.is_awake()) note_joined(bodies, body, joints.graph());
   collide_candidates(bodies, candidates, joints);
   collide_woken(bodies, joints);
 }
@@ -100,15 +100,17 @@ void Collision::collide_woken(Bodies& bodies, ContactJoints& joints) {
     for (const Plane& plane : planes_) collide_plane(body, plane, joints);
     for (const Plane& plane : callers_planes_) collide_plane(body, plane, joints);
     collide_candidates(bodies, broad_phase_.find_of_sleeper(bodies, body, is_left), joints);
-    note_joined(bodies, body);
+    note_joined(bodies, body, joints.graph());
   }
 }
 
-void Collision::note_joined(Bodies& bodies, const Body& body) {
-  for (int joint = 0; joint < dBodyGetNumJoints(body.body); ++joint)
+// Those whom it meets are known as such already.
+void Collision::note_joined(Bodies& bodies, const Body& body, const ContactGraph& contacts) {
+  contacts.any_other_joint(body.body, [&](dJointID joint) {
     for (const int end : {0, 1})
-      if (const dBodyID other = dJointGetBody(dBodyGetJoint(body.body, joint), end))
-        note_woken(bodies, bodies.owner(other));
+      if (const dBodyID other = dJointGetBody(joint, end)) note_woken(bodies, bodies.owner(other));
+    return false;
+  });
 }
 
 void Collision::note_woken(Bodies& bodies, const Body* body) {

@@ -76,7 +76,7 @@ class Collision {
   void collide_plane(Body& body, const Plane& plane, ContactJoints& joints);
   void collide_candidates(Bodies& bodies, std::span<const Candidate> candidates, ContactJoints& joints);
   void collide_woken(Bodies& bodies, ContactJoints& joints);
-  void note_joined(Bodies& bodies, const Body& body);
+  void note_joined(Bodies& bodies, const Body& body, const ContactGraph& contacts);
   void note_woken(Bodies& bodies, const Body* body);
   void find_pair_points(const Body& body, const Body* other, std::span<const Candidate> parts);
   void find_filtered_points(const Body& body, const Body& other, const Candidate& pair, double size);

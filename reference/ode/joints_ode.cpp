@@ -116,6 +116,7 @@ void ContactJoints::add(const ContactSide& first, const ContactSide& second,
                          !other.id && other.moves, arm_on(own, point.point), arm_on(other, point.point),
                          other.callers_slot, point.above, other.material});
   }
+  graph_.add(first.body, second.body, int(points.size()));
   made_ += std::int64_t(points.size());
 }
 

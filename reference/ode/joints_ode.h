@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reference/ode/contact_filter.h"
+#include "reference/ode/contact_graph.h"
 #include "reference/ode/ode_world.h"
 #include "reference/ode/runtime_ode.h"
 #include "reference/state_archive.h"
@@ -75,7 +76,7 @@ class ContactJoints {
   /// Depths may be negative by what bodies at rest are left to overlap (kRestingDepth).
   void add(const ContactSide& first, const ContactSide& second, std::span<const ContactPoint> points);
   /// Destroys the joints; contacts() stays.
-  void end() { dJointGroupEmpty(group_); }
+  void end() { dJointGroupEmpty(group_), graph_.clear(); }
 
   /// Who is told of every contact; null: nobody.
   void tell(Touches* touches) { touches_ = touches; }
@@ -87,6 +88,7 @@ class ContactJoints {
   std::span<const OdeContact> contacts() const { return contacts_; }
   /// Bodies that touch a surface that moves, in no order.
   std::span<const dBodyID> carried() const { return carried_; }
+  const ContactGraph& graph() const { return graph_; }
   /// Whether bodies that touch differ twelvefold and more in mass.
   bool is_uneven() const { return is_uneven_; }
   std::int64_t made() const { return made_; }
@@ -115,6 +117,7 @@ class ContactJoints {
   Touches* touches_ = nullptr;
   std::vector<OdeContact> contacts_;
   std::vector<dBodyID> carried_;
+  ContactGraph graph_;
   bool is_uneven_ = false;
   std::int64_t made_ = 0;
 };

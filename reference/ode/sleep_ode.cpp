@@ -30,10 +30,11 @@ void put_to_rest(const Body& body) {
 
 }  // namespace
 
-void Sleep::run(Bodies& bodies, std::span<const dBodyID> carried, const Vec3& gravity, double h) {
-  gravity_ = gravity;
-  if (on_) find_carried(bodies, carried), find_pulled(bodies);
-  const double strength = gravity.norm();
+void Sleep::run(Bodies& bodies, const ContactJoints& joints, double h) {
+  const ContactGraph& contacts = joints.graph();
+  gravity_ = joints.gravity();
+  if (on_) find_carried(bodies, joints), find_pulled(bodies, contacts);
+  const double strength = gravity_.norm();
   for (Body& body : bodies.slots()) {
     const bool was_put_to_rest = std::exchange(body.fell_asleep, false);
     if (!body.body || !dBodyIsEnabled(body.body)) continue;
@@ -46,9 +47,9 @@ void Sleep::run(Bodies& bodies, std::span<const dBodyID> carried, const Vec3& gr
       continue;
     body.to_sleep_s =
         is_still(body) ? body.to_sleep_s - h / rocking_slowness(body.reach, strength) : law_.time;
-    if (body.to_sleep_s <= 0.0 && is_drawn(bodies, body)) body.to_sleep_s = kDrawn * law_.time;
+    if (body.to_sleep_s <= 0.0 && is_drawn(bodies, body, contacts)) body.to_sleep_s = kDrawn * law_.time;
     if (body.to_sleep_s > 0.0) continue;
-    if (was_put_to_rest && is_dragged(body, h)) {
+    if (was_put_to_rest && is_dragged(body, contacts, h)) {
       body.to_sleep_s = law_.time;
       continue;
     }
@@ -87,42 +88,57 @@ bool gives_way(Bodies& bodies, dBodyID body, const Vec3& point, double slow) {
   return velocity.dot(force) > slow * force.norm() || turning.dot(torque) * arm > slow * torque.norm();
 }
 
+bool is_contact(dJointID joint) { return dJointGetType(joint) == dJointTypeContact; }
+
+template <class Predicate>
+bool any_end(dJointID joint, dBodyID body, const Predicate& predicate) {
+  const auto is_one = [&](dBodyID other) { return other && other != body && predicate(other); };
+  return is_one(dJointGetBody(joint, 0)) || is_one(dJointGetBody(joint, 1));
+}
+
+// Whether the predicate holds for any that a joint ties to `body`.
+template <class Predicate>
+bool any_tied(const ContactGraph& contacts, dBodyID body, const Predicate& predicate) {
+  return contacts.any_other_joint(
+      body, [&](dJointID joint) { return !is_contact(joint) && any_end(joint, body, predicate); });
+}
+
+// For any that it touches, by contacts of the caller's own, too.
+template <class Predicate>
+bool any_touched(const ContactGraph& contacts, dBodyID body, const Predicate& predicate) {
+  return std::ranges::any_of(contacts.met_by(body), predicate) ||
+         contacts.any_other_joint(
+             body, [&](dJointID joint) { return is_contact(joint) && any_end(joint, body, predicate); });
+}
+
 // Whether one that hangs together with `joined` by joints does, or is driven by a motor. Adds these, as far
 // as it looks.
-bool is_pulled_together(Bodies& bodies, std::vector<dBodyID>& joined, const Vec3& point, double slow) {
-  for (std::size_t next = 0; next < joined.size(); ++next) {
-    if (gives_way(bodies, joined[next], point, slow)) return true;
-    for (int i = 0; i < dBodyGetNumJoints(joined[next]); ++i) {
-      const dJointID joint = dBodyGetJoint(joined[next], i);
-      if (dJointGetType(joint) == dJointTypeContact) continue;
-      if (is_driven(joint)) return true;
-      for (const int end : {0, 1})
-        if (const dBodyID by = dJointGetBody(joint, end); by && !std::ranges::count(joined, by))
-          joined.push_back(by);
-    }
-  }
+bool is_pulled_together(Bodies& bodies, const ContactGraph& contacts, std::vector<dBodyID>& joined,
+                        const Vec3& point, double slow) {
+  const auto drives = [&](dJointID joint) {
+    if (is_contact(joint)) return false;
+    if (is_driven(joint)) return true;
+    for (const int end : {0, 1})
+      if (const dBodyID by = dJointGetBody(joint, end); by && !std::ranges::count(joined, by))
+        joined.push_back(by);
+    return false;
+  };
+  for (std::size_t next = 0; next < joined.size(); ++next)
+    if (gives_way(bodies, joined[next], point, slow) || contacts.any_other_joint(joined[next], drives))
+      return true;
   return false;
 }
 
 // To a force, a motor, or to what pulls it by joints.
-bool is_pulled(Bodies& bodies, dBodyID body, const Vec3& point, double slow) {
+bool is_pulled(Bodies& bodies, const ContactGraph& contacts, dBodyID body, const Vec3& point, double slow) {
   if (gives_way(bodies, body, point, slow)) return true;
   if (speed_at(body, point) < slow) return false;
   std::vector<dBodyID> joined{body};
-  return is_pulled_together(bodies, joined, point, slow);
+  return is_pulled_together(bodies, contacts, joined, point, slow);
 }
 
-bool has_own_joints(dBodyID body) {
-  for (int i = 0; i < dBodyGetNumJoints(body); ++i)
-    if (dJointGetType(dBodyGetJoint(body, i)) != dJointTypeContact) return true;
-  return false;
-}
-
-// By a joint, on what nothing stops.
-bool hangs_on_mover(dBodyID body) {
-  return std::ranges::any_of(joined_bodies(body), [](dBodyID other) {
-    return other && dBodyIsKinematic(other) && is_moving(other);
-  });
+bool has_own_joints(dBodyID body, const ContactGraph& contacts) {
+  return contacts.any_other_joint(body, [](dJointID joint) { return !is_contact(joint); });
 }
 
 Vec3 rim_of(const Body& body) {
@@ -134,43 +150,34 @@ Vec3 rim_of(const Body& body) {
 
 // Of one that was put to rest in the last substep, too: whether one that it touches, faster than what sleeps,
 // moves it its own way time and again, and is held back by it.
-bool Sleep::is_dragged(Body& body, double h) const {
+bool Sleep::is_dragged(Body& body, const ContactGraph& contacts, double h) const {
   body.withheld = std::exp(-h / kForgets) * body.withheld + to_vec3(dBodyGetLinearVel(body.body));
   if (body.withheld.squaredNorm() <= square(kWithheld * law_.speed)) return false;
   const Vec3 center = to_vec3(dBodyGetPosition(body.body));
   const auto drags = [&](dBodyID other) {
-    if (!other || other == body.body || !dBodyIsEnabled(other)) return false;
+    if (!dBodyIsEnabled(other)) return false;
     const Vec3 velocity = velocity_at(other, center);
     const double speed = velocity.norm();
     return speed > law_.speed && body.withheld.dot(velocity) > kWithheld * law_.speed * speed;
   };
-  for (int i = 0; i < dBodyGetNumJoints(body.body); ++i) {
-    const dJointID joint = dBodyGetJoint(body.body, i);
-    if (drags(dJointGetBody(joint, 0)) || drags(dJointGetBody(joint, 1))) return true;
-  }
-  return false;
+  return any_touched(contacts, body.body, drags) || any_tied(contacts, body.body, drags);
 }
 
 // Whether what it touches moves, or gives way to a force or a motor: put to rest again in each step, it would
 // hold that back, and of what the two exchange its share be lost. (What jitters in a heap moves nobody.)
-bool Sleep::is_drawn(Bodies& bodies, const Body& body) const {
+bool Sleep::is_drawn(Bodies& bodies, const Body& body, const ContactGraph& contacts) const {
   constexpr double kMoves = 4.0;  // times the speed
   if (pulled_.contains(body.body)) return true;
   const Vec3 center = to_vec3(dBodyGetPosition(body.body));
   const auto draws = [&](dBodyID other) {
-    if (!other || other == body.body || !dBodyIsEnabled(other)) return false;
-    return speed_at(other, center) > kMoves * law_.speed ||
-           is_pulled(bodies, other, center, kGivesWay * law_.speed);
+    return dBodyIsEnabled(other) && (speed_at(other, center) > kMoves * law_.speed ||
+                                     is_pulled(bodies, contacts, other, center, kGivesWay * law_.speed));
   };
-  for (int i = 0; i < dBodyGetNumJoints(body.body); ++i) {
-    const dJointID joint = dBodyGetJoint(body.body, i);
-    if (draws(dJointGetBody(joint, 0)) || draws(dJointGetBody(joint, 1))) return true;
-  }
-  return false;
+  return any_touched(contacts, body.body, draws) || any_tied(contacts, body.body, draws);
 }
 
 // And who lies on them, on those in turn, and so on. What hangs together by joints is looked through once.
-void Sleep::find_pulled(Bodies& bodies) {
+void Sleep::find_pulled(Bodies& bodies, const ContactGraph& contacts) {
   const double slow = kGivesWay * law_.speed;
   pulled_.clear(), unpulled_.clear(), waiting_.clear();
   const auto add = [&](dBodyID body) {
@@ -179,11 +186,11 @@ void Sleep::find_pulled(Bodies& bodies) {
   for (const Body& body : bodies.slots()) {
     if (!body.body || !dBodyIsEnabled(body.body) || body.properties.kinematic) continue;
     const Vec3 rim = rim_of(body);
-    if (!has_own_joints(body.body)) {
+    if (!has_own_joints(body.body, contacts)) {
       if (gives_way(bodies, body.body, rim, slow)) add(body.body);
     } else if (!unpulled_.contains(body.body)) {
       joined_.assign(1, body.body);
-      if (!is_pulled_together(bodies, joined_, rim, slow)) {
+      if (!is_pulled_together(bodies, contacts, joined_, rim, slow)) {
         unpulled_.insert(joined_.begin(), joined_.end());
         continue;
       }
@@ -195,40 +202,51 @@ void Sleep::find_pulled(Bodies& bodies) {
   while (!waiting_.empty()) {
     const dBodyID body = waiting_.back();
     waiting_.pop_back();
-    for (int i = 0; i < dBodyGetNumJoints(body); ++i) {
-      const dJointID joint = dBodyGetJoint(body, i);
-      if (dJointGetType(joint) != dJointTypeContact) continue;
-      for (const int end : {0, 1})
-        if (const dBodyID other = dJointGetBody(joint, end);
-            other && other != body && dBodyIsEnabled(other) && height(other) > height(body) &&
-            pulled_.insert(other).second)
-          waiting_.push_back(other);
-    }
+    any_touched(contacts, body, [&](dBodyID other) {
+      if (dBodyIsEnabled(other) && height(other) > height(body)) add(other);
+      return false;
+    });
   }
 }
 
-void Sleep::find_carried(Bodies& bodies, std::span<const dBodyID> carried) {
+void Sleep::find_carried(Bodies& bodies, const ContactJoints& joints) {
+  const ContactGraph& contacts = joints.graph();
   carried_.clear();
-  waiting_.assign(carried.begin(), carried.end());
+  waiting_.assign(joints.carried().begin(), joints.carried().end());
   for (const Body& body : bodies.slots())
     if (body.body && body.kept_awake) waiting_.push_back(body.body);
   grouped_.clear();
   for (const Body& body : bodies.slots()) {
-    if (!body.body || !dBodyIsEnabled(body.body) || !has_own_joints(body.body) ||
+    if (!body.body || !dBodyIsEnabled(body.body) || !has_own_joints(body.body, contacts) ||
         grouped_.contains(body.body))
       continue;
-    joined_ = find_jointed_group(body.body);
-    grouped_.insert(joined_.begin(), joined_.end());
+    find_group(body.body, contacts);
+    const auto hangs_on_mover = [&](dBodyID member) {  // by a joint, on what nothing stops
+      return any_tied(contacts, member, [](dBodyID by) { return dBodyIsKinematic(by) && is_moving(by); });
+    };
     if (std::ranges::any_of(joined_, hangs_on_mover)) waiting_.push_back(body.body);
   }
+  const auto add = [&](dBodyID other) {
+    waiting_.push_back(other);
+    return false;
+  };
   while (!waiting_.empty()) {
     const dBodyID body = waiting_.back();
     waiting_.pop_back();
     if (dBodyIsKinematic(body) || !carried_.insert(body).second) continue;
-    for (int i = 0; i < dBodyGetNumJoints(body); ++i)
-      for (const int end : {0, 1})
-        if (const dBodyID other = dJointGetBody(dBodyGetJoint(body, i), end)) waiting_.push_back(other);
+    any_touched(contacts, body, add), any_tied(contacts, body, add);
   }
+}
+
+// All that hang together with it by joints, through any but kinematic bodies.
+void Sleep::find_group(dBodyID body, const ContactGraph& contacts) {
+  joined_.assign(1, body);
+  grouped_.insert(body);
+  for (std::size_t i = 0; i < joined_.size(); ++i)
+    any_tied(contacts, joined_[i], [&](dBodyID other) {
+      if (!dBodyIsKinematic(other) && grouped_.insert(other).second) joined_.push_back(other);
+      return false;
+    });
 }
 
 }  // namespace lodestone::ode

@@ -7,6 +7,7 @@
 #include <unordered_set>
 
 #include "reference/ode/bodies_ode.h"
+#include "reference/ode/joints_ode.h"
 
 namespace lodestone::ode {
 
@@ -17,17 +18,18 @@ class Sleep {
   void set_law(const SleepLaw& law) { law_ = law; }
   const SleepLaw& law() const { return law_; }
 
-  /// `carried`: bodies on surfaces that move; they, those on joints to kinematic bodies that move, and what
-  /// hangs together with these by joints, those of contacts too, stay awake. `gravity` in m/s²; `h`: the step
-  /// to come, s.
-  void run(Bodies& bodies, std::span<const dBodyID> carried, const Vec3& gravity, double h);
+  /// For the next step, of `h` s, with these contacts. Bodies on surfaces that move, those on joints to
+  /// kinematic bodies that move, and what hangs together with these by joints, those of contacts too, stay
+  /// awake.
+  void run(Bodies& bodies, const ContactJoints& joints, double h);
 
  private:
-  void find_carried(Bodies& bodies, std::span<const dBodyID> carried);
+  void find_carried(Bodies& bodies, const ContactJoints& joints);
+  void find_group(dBodyID body, const ContactGraph& contacts);
   bool is_still(const Body& body) const;
-  bool is_dragged(Body& body, double h) const;
-  bool is_drawn(Bodies& bodies, const Body& body) const;
-  void find_pulled(Bodies& bodies);
+  bool is_dragged(Body& body, const ContactGraph& contacts, double h) const;
+  bool is_drawn(Bodies& bodies, const Body& body, const ContactGraph& contacts) const;
+  void find_pulled(Bodies& bodies, const ContactGraph& contacts);
 
   SleepLaw law_;
   bool on_;

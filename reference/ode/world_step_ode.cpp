@@ -157,7 +157,7 @@ bool OdeWorld::Impl::retry_substep(double h, int attempt, bool by_quick_step) {
 
 void OdeWorld::Impl::begin_substep(double h, int attempt) {
   find_contacts(h, attempt);
-  sleep.run(bodies, joints.carried(), joints.gravity(), h);
+  sleep.run(bodies, joints, h);
   turn_to_impacts();
 }
 
