@@ -39,36 +39,46 @@ std::shared_ptr<const Shape> make_tied_shape(dxBody* body) {
 
 }  // namespace
 
+void CallersBodies::note_places() {
+  place_of_.clear(), of_number_.clear();
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    place_of_.emplace(bodies_[i].body, i), of_number_.emplace(bodies_[i].owner, bodies_[i].body);
+}
+
+CallersBodies::Entry& CallersBodies::add(dxBody* body) {
+  place_of_.emplace(body, bodies_.size());
+  Entry& entry = bodies_.emplace_back();
+  entry.body = body;
+  entry.owner = kFirstOwner + owners_++;
+  return entry;
+}
+
 void CallersBodies::follow(const SpaceMirror& mirror,
                            const std::function<void(const Eigen::AlignedBox3d&)>& left,
                            const std::function<void(std::uint32_t, const GroundBits&)>& tell) {
   const std::span<const MirroredGeom> geoms = mirror.geoms();
   body_of_slot_.resize(geoms.size(), nullptr);
-  const auto entry_of = [&](dxBody* body) { return std::ranges::find(bodies_, body, &Entry::body); };
   for (const std::uint32_t slot : mirror.removed()) {
     if (!body_of_slot_[slot]) continue;
-    const auto entry = entry_of(body_of_slot_[slot]);
+    Entry& entry = bodies_[place_of_.at(body_of_slot_[slot])];
     body_of_slot_[slot] = nullptr;
-    std::erase(entry->slots, slot);
-    entry->stale = true;
+    std::erase(entry.slots, slot);
+    entry.stale = true;
     left(geoms[slot].bounds);
-    if (!entry->slots.empty()) continue;
-    tell(entry->owner, {});
-    bodies_.erase(entry);
+    if (!entry.slots.empty()) continue;
+    tell(entry.owner, {});
+    place_of_.erase(entry.body);  // another may have its address
+    entry.body = nullptr;
   }
   for (const std::uint32_t slot : mirror.added()) {
     if (!geoms[slot].dynamic) continue;
-    auto entry = entry_of(geoms[slot].body);
-    if (entry == bodies_.end()) {
-      Entry& added = bodies_.emplace_back();
-      added.body = geoms[slot].body;
-      added.owner = kFirstOwner + owners_++;
-      entry = bodies_.end() - 1;
-    }
+    const auto known = place_of_.find(geoms[slot].body);
+    Entry& entry = known == place_of_.end() ? add(geoms[slot].body) : bodies_[known->second];
     body_of_slot_[slot] = geoms[slot].body;
-    entry->slots.insert(std::ranges::lower_bound(entry->slots, slot), slot);
-    entry->stale = true;
+    entry.slots.insert(std::ranges::lower_bound(entry.slots, slot), slot);
+    entry.stale = true;
   }
+  std::erase_if(bodies_, [](const Entry& entry) { return !entry.body; });
   for (const std::uint32_t slot : mirror.moved()) {
     const Eigen::AlignedBox3d &before = geoms[slot].previous_bounds, &now = geoms[slot].bounds;
     const double moved = std::max((now.min() - before.min()).cwiseAbs().maxCoeff(),
@@ -95,6 +105,7 @@ void CallersBodies::follow(const SpaceMirror& mirror,
     entry.shape = nullptr;
     make_shape(mirror, entry);
   }
+  if (!mirror.removed().empty() || !mirror.added().empty()) note_places();
 }
 
 // He may give it another mass at any time.
@@ -135,19 +146,20 @@ std::vector<dxBody*> CallersBodies::find_tied(std::span<dxBody* const> jointed) 
 void CallersBodies::follow_tied(std::span<dxBody* const> jointed,
                                 const std::function<void(std::uint32_t, const GroundBits&)>& tell) {
   const std::vector<dxBody*> tied = find_tied(jointed);
-  std::erase_if(bodies_, [&](const Entry& entry) {
-    const bool gone = entry.is_tied() && !std::ranges::count(tied, entry.body);
-    if (gone) tell(entry.owner, {});
-    return gone;
+  const std::unordered_set<dxBody*> are_tied(tied.begin(), tied.end());
+  const auto gone = std::erase_if(bodies_, [&](const Entry& entry) {
+    const bool is_gone = entry.is_tied() && !are_tied.contains(entry.body);
+    if (is_gone) tell(entry.owner, {});
+    return is_gone;
   });
+  if (gone > 0) note_places();
   for (dxBody* const body : tied) {
-    if (const auto known = std::ranges::find(bodies_, body, &Entry::body); known != bodies_.end()) {
-      follow_inertia(*known);
+    if (const auto known = place_of_.find(body); known != place_of_.end()) {
+      follow_inertia(bodies_[known->second]);
       continue;
     }
-    Entry& entry = bodies_.emplace_back();
-    entry.body = body;
-    entry.owner = kFirstOwner + owners_++;
+    Entry& entry = add(body);
+    of_number_.emplace(entry.owner, body);
     entry.shape = make_tied_shape(body);
     entry.bits = {0, 0};
     entry.stale = entry.untold = false;
@@ -240,6 +252,7 @@ void CallersBodies::archive(StateArchive& a, const SpaceMirror* mirror) {
   }
   owners_ = std::max(owners, owners_);
   for (; next != bodies_.end(); ++next) next->owner = kFirstOwner + owners_++;
+  note_places();
 }
 
 void CallersBodies::each_near(const Vec3& center, double radius, const BodyProperties& own,
@@ -269,8 +282,8 @@ std::vector<CallersPart> CallersBodies::find_parts(const SpaceMirror& mirror) co
 }
 
 dxBody* CallersBodies::body_of(std::uint32_t owner) const {
-  const auto entry = std::ranges::find(bodies_, owner, &Entry::owner);
-  return entry == bodies_.end() ? nullptr : entry->body;
+  const auto known = of_number_.find(owner);
+  return known == of_number_.end() ? nullptr : known->second;
 }
 
 }  // namespace lodestone

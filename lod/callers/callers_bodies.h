@@ -3,7 +3,6 @@
 // bodies, meet nobody, but pull and weigh.
 #pragma once
 
-#include <algorithm>
 #include <functional>
 #include <memory>
 #include <span>
@@ -41,9 +40,7 @@ class CallersBodies {
   void follow_tied(std::span<dxBody* const> jointed,
                    const std::function<void(std::uint32_t, const GroundBits&)>& tell);
   std::size_t size() const { return bodies_.size(); }
-  bool contains(dxBody* body) const {
-    return std::ranges::find(bodies_, body, &Entry::body) != bodies_.end();
-  }
+  bool contains(dxBody* body) const { return place_of_.contains(body); }
 
   /// Appends them as neighbours, as they are now, and what holds them up: `first` is the index that the first
   /// of them has there.
@@ -84,11 +81,15 @@ class CallersBodies {
     bool is_tied() const { return slots.empty(); }
   };
   static void follow_inertia(Entry& entry);
+  void note_places();
+  Entry& add(dxBody* body);
   void make_shape(const SpaceMirror& mirror, Entry& entry);
   std::vector<dxBody*> find_tied(std::span<dxBody* const> jointed) const;
   std::vector<const Entry*> find_living(const SpaceMirror& mirror) const;
 
-  std::vector<Entry> bodies_;  // in the order in which they came
+  std::vector<Entry> bodies_;                             // in the order in which they came
+  std::unordered_map<dxBody*, std::size_t> place_of_;     // among them
+  std::unordered_map<std::uint32_t, dxBody*> of_number_;  // by their owners
   std::vector<dxBody*> body_of_slot_;
   BodyForms forms_;
   std::uint32_t owners_ = 0;

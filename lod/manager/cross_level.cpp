@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <tuple>
+#include <unordered_map>
 
 #include "lod/contact/reckoned_contacts.h"
 #include "lod/manager/joint_contacts.h"
@@ -57,8 +58,21 @@ void update_seen(std::span<const OdeContact> found, std::vector<Neighborhood::Se
   seen = std::move(now);
 }
 
+using NumberOfBody = std::unordered_map<dxBody*, std::int32_t>;
+
+/// Of the neighbours that are the caller's, where any of these contacts is with one of them.
+NumberOfBody number_callers(const Levels& levels, const Neighborhood& neighborhood) {
+  NumberOfBody number;
+  if (std::ranges::none_of(neighborhood.seen,
+                           [](const auto& seen) { return seen.contact.callers_slot >= 0; }))
+    return number;
+  for (std::size_t i = levels.full.members().size(); i < neighborhood.ode_bodies.size(); ++i)
+    number.emplace(neighborhood.ode_bodies[i], std::int32_t(i));
+  return number;
+}
+
 /// Of the neighbour that is the contact's second; −1: the ground. None where it is gone.
-std::optional<std::int32_t> second_of(const Levels& levels, const Neighborhood& neighborhood,
+std::optional<std::int32_t> second_of(const Levels& levels, const NumberOfBody& callers,
                                       const OdeContact& contact) {
   if (contact.second) {
     const std::int32_t member = levels.full.index_of(contact.second);
@@ -67,8 +81,8 @@ std::optional<std::int32_t> second_of(const Levels& levels, const Neighborhood& 
   if (contact.callers_slot < 0) return -1;
   dxBody* const body = levels.callers.bodies.body_of_slot(std::size_t(contact.callers_slot));
   if (!body) return {};
-  const auto found = std::ranges::find(neighborhood.ode_bodies, body);  // none, if it has no shape
-  return found == neighborhood.ode_bodies.end() ? -1 : std::int32_t(found - neighborhood.ode_bodies.begin());
+  const auto found = callers.find(body);  // none, if it has no shape
+  return found == callers.end() ? -1 : found->second;
 }
 
 // m/s, in the step to come, where ODE's contact knows that of the last one: of the part that is there, if no
@@ -171,10 +185,11 @@ void reckon_contacts_of_newcomers(const Levels& levels, Neighborhood& neighborho
 
 void gather_contacts(const Levels& levels, Neighborhood& neighborhood, double dt) {
   update_seen(levels.full.world()->contacts(), neighborhood.seen);
+  const NumberOfBody callers = number_callers(levels, neighborhood);
   for (const Neighborhood::Seen& seen : neighborhood.seen) {
     const OdeContact& contact = seen.contact;
     const std::int32_t first = levels.full.index_of(contact.first);
-    const std::optional<std::int32_t> second = second_of(levels, neighborhood, contact);
+    const std::optional<std::int32_t> second = second_of(levels, callers, contact);
     if (first < 0 || !second) continue;
     std::optional<FullContact> full = full_contact_of(levels, neighborhood, first, *second, seen, dt);
     if (!full) continue;
