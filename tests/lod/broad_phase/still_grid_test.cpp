@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <optional>
 #include <set>
 #include <vector>
@@ -53,6 +56,35 @@ TEST(StillGrid, FindsWhatLiesNearWhoeverCameAndWent) {
   for (const std::uint32_t body : inside) grid.remove(body, lying(body).position, lying(body).radius);
   EXPECT_TRUE(grid.empty());
   EXPECT_TRUE(near(grid, Vec3::Zero(), 100.0).empty());
+}
+
+// Cell by cell, however wide: so balls of one cell come one after the other, and cells by z, y and x.
+TEST(StillGrid, IsLookedThroughCellByCellByWhatIsLarge) {
+  constexpr double kEdge = 0.5, kRadius = 0.2;  // m, of a ball of this radius
+  struct Place {
+    Vec3 at;
+    std::array<double, 3> cell;  // z first
+  };
+  StillGrid grid;
+  std::vector<Place> places;
+  for (std::uint32_t body = 0; body < 20'000; ++body) {
+    RandomStream random(12, body, 0);
+    const Vec3 at(random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9));
+    places.push_back(
+        {at, {std::floor(at.z() / kEdge), std::floor(at.y() / kEdge), std::floor(at.x() / kEdge)}});
+    grid.insert(body, at, kRadius);
+  }
+  for (const Vec3& center : {Vec3(0.3, -0.2, 0.1), Vec3(-5.0, 6.0, 2.0), Vec3(30.0, 0.0, 0.0)})
+    for (const double reach : {1.5, 3.0, 4.5}) {
+      std::vector<std::uint32_t> found;
+      grid.find_near(center, reach, [&](std::uint32_t body) { found.push_back(body); });
+      EXPECT_TRUE(std::ranges::is_sorted(found, {}, [&](std::uint32_t body) { return places[body].cell; }));
+      std::ranges::sort(found);
+      for (std::uint32_t body = 0; body < places.size(); ++body)
+        EXPECT_TRUE((places[body].at - center).norm() >= reach + kRadius ||
+                    std::ranges::binary_search(found, body))
+            << body;
+    }
 }
 
 // Whoever looked once knows who is there until the number changes.
