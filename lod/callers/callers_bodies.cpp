@@ -13,6 +13,7 @@ namespace lodestone {
 namespace {
 
 constexpr std::uint32_t kFirstOwner = 0x40000000;  // above every body of the manager's
+constexpr std::size_t kMadeKept = 64;              // shapes, as BodyForms keeps forms
 constexpr double kLeft = 0.02;  // over its longest side: a geom whose bounds move by more in a step has left
 // Over R: so deep what is pressed onto ground begins ODE's step, lest this find no contact there in the next:
 // its ERP leaves depths that rounding decides.
@@ -125,9 +126,19 @@ void CallersBodies::make_shape(const SpaceMirror& mirror, Entry& entry) {
   BodyForm form = forms_.form_of(std::move(geoms));
   entry.solids = std::move(form.solids);
   if (!form.shape) return;
+  const Mat3 inverse_inertia = inverse_inertia_per_mass(entry.body);
+  const auto made = std::ranges::find_if(made_, [&](const MadeShape& one) {
+    return one.form == form.shape && one.shape->inverse_inertia_per_mass == inverse_inertia;
+  });
+  if (made != made_.end()) {
+    entry.shape = made->shape;
+    return;
+  }
   Shape shape = *form.shape;
   set_inertia(shape, entry.body);
   entry.shape = std::make_shared<const Shape>(std::move(shape));
+  if (made_.size() == kMadeKept) made_.erase(made_.begin());
+  made_.push_back({form.shape, entry.shape});
 }
 
 // In the order in which joints lead to them.

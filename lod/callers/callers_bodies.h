@@ -91,7 +91,11 @@ class CallersBodies {
   std::unordered_map<dxBody*, std::size_t> place_of_;     // among them
   std::unordered_map<std::uint32_t, dxBody*> of_number_;  // by their owners
   std::vector<dxBody*> body_of_slot_;
+  struct MadeShape {
+    std::shared_ptr<const Shape> form, shape;  // without inertia, and with that of such a body
+  };
   BodyForms forms_;
+  std::vector<MadeShape> made_;  // the last few that were made: bodies that are alike have one
   std::uint32_t owners_ = 0;
 };
 
