@@ -1,4 +1,4 @@
-// What touched what in a step: for sounds, damage and triggers.
+// Contact events: what touched what in a step, for sounds, damage and triggers.
 #pragma once
 
 #include <cstdint>
@@ -11,46 +11,51 @@ struct dxBody;
 
 namespace lodestone {
 
-/// Which contact events a manager makes. None as it is; what nobody asks for costs nothing.
+/// Which contact events a manager makes. By default none; events that nobody asks for cost nothing.
 struct EventSettings {
-  bool all_bodies = false;  ///< of all bodies; else of those that ask for them, see BodyDefinition::events
-  /// m/s, ≥ 0, at which two points must near each other along the normal to be a hit.
+  /// Events of all bodies; false: only of those with BodyDefinition::events, and of whatever touches these.
+  bool all_bodies = false;
+  /// m/s, ≥ 0: how fast two bodies must approach each other, along the normal at a point of contact, to make
+  /// a hit.
   double least_speed = 0.5;
-  double least_impulse = 0.0;  ///< N s, ≥ 0, that a hit must give
+  double least_impulse = 0.0;  ///< N s, ≥ 0: and the least impulse of the contact (ContactEvent::impulse)
 };
 
+/// What happened between the two sides of a contact.
 enum class ContactPhase : std::uint8_t {
-  begin,  ///< they touch, and have not done so for a tenth of a second
-  hit,    ///< they strike each other: with a begin, or while they touch; at most once a step
-  /// They have not touched for a tenth of a second, or one of them was removed; not said of two that sleep
-  /// where they lie.
+  begin,  ///< they touch, and had not touched for .1 s before
+  hit,    ///< they strike each other, as they begin to touch or later; at most one hit per pair and step
+  /// They have not touched for .1 s, or one of them was removed. Two that sleep in contact do not end it.
   end,
 };
 
-/// Who takes part in a contact.
+/// One of the two sides of a contact, or what a query meets. `body`: a body of the manager's. `ground`:
+/// ground that was added to the manager. `callers`: a geom or a dynamic body of the caller's, in his world.
 struct ContactSide {
   enum class Kind : std::uint8_t { body, ground, callers };
   Kind kind = Kind::ground;
-  BodyId body = {};      ///< of the manager's own; at the end of a contact perhaps removed
-  GroundId ground = {};  ///< of the manager's ground; null where it is not known which piece
-  /// dGeomID, of the caller's ground, and of his bodies where a query meets them; at a contact null for a
-  /// body of his.
+  BodyId body = {};      ///< of kind `body`, else null; at the end of a contact it may have been removed
+  GroundId ground = {};  ///< of kind `ground`, else null; also null where it is not known which piece it was
+  /// dGeomID, of kind `callers`: of a geom that is ground, and in a query of a dynamic body's geom. Null in a
+  /// contact event with a dynamic body. At the end of a contact the caller may have destroyed it.
   dxGeom* geom = nullptr;
-  /// dBodyID, of a dynamic body of the caller's; at the end of a contact it, as geom, is perhaps one that he
-  /// has destroyed.
+  /// dBodyID, of kind `callers`: the caller's dynamic body, else null. At the end of a contact the caller may
+  /// have destroyed it.
   dxBody* callers = nullptr;
   MaterialId material = 0;
 };
 
-/// `first` is a body of the manager's. Two bodies: the one with the lower index first.
+/// One event of a pair in one step. `first` is always a body of the manager's; of two such bodies it is the
+/// one with the lower index.
 struct ContactEvent {
   ContactPhase phase = ContactPhase::begin;
   ContactSide first, second;
-  Vec3 point = Vec3::Zero();    ///< m, world, where most was given; at the end the last one
-  Vec3 normal = Vec3::UnitZ();  ///< into the first
-  /// N s along the normal, over the whole step and all points in which they touch; 0 at the end.
+  /// m, world: the point of contact with the greatest impulse; at the end that of the last step in contact.
+  Vec3 point = Vec3::Zero();
+  Vec3 normal = Vec3::UnitZ();  ///< unit, at that point, towards `first`
+  /// N s along the normal, summed over the step and all points of contact; 0 at the end.
   double impulse = 0.0;
-  double speed = 0.0;  ///< m/s at which they came together, along the normal; 0 at the end
+  double speed = 0.0;  ///< m/s, the greatest at which they approached along a normal; 0 at the end
 };
 
 }  // namespace lodestone

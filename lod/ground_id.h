@@ -1,11 +1,11 @@
-// A plane, box, mesh or other piece of ground of a Manager.
+// The id of a piece of a Manager's ground: a plane, a box, a mesh.
 #pragma once
 
 #include <cstdint>
 
 namespace lodestone {
 
-/// Stable until it is removed; a removed one's id is never valid again. Zero is null.
+/// Names a piece of ground until that is removed; after that the id is never valid again. Zero is null.
 struct GroundId {
   std::uint32_t index = 0, generation = 0;
   explicit operator bool() const { return generation != 0; }

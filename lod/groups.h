@@ -1,4 +1,4 @@
-// Bodies that change rung together: what a caller may ask for with Manager::make_group.
+// Bodies that change rung together: what a caller gives Manager::make_group besides the bodies.
 #pragma once
 
 #include <functional>
@@ -8,14 +8,15 @@
 namespace lodestone {
 
 /// For a group whose members the caller has joined with ODE joints (Manager::ode_body). Joints pin a body at
-/// the full level. With these two, a joined group may leave it while all of it sleeps, so that nothing moves,
-/// and comes back as a whole at once, to the very same poses, when something wakes one of them: before ODE's
-/// next step. They are called within Manager::step, which they may read and not change.
+/// the full level. With these two functions a joined group may leave it while all of its bodies sleep. When
+/// something wakes one of them, all come back before ODE's next step, to exactly the poses that they had.
+/// Both functions or neither: make_group throws InputError for one alone. They are called within a step,
+/// after_promotion also within dissolve_group and restore(), and may read the manager but not change it.
 struct GroupJoints {
-  /// Destroys the joints, or detaches them: the ODE bodies are gone when it has returned. One that leaves a
-  /// joint keeps its group full.
+  /// Must destroy or detach the joints: the ODE bodies are destroyed after it returns. If it leaves a joint,
+  /// the group stays full.
   std::function<void(GroupId)> before_demotion = {};
-  std::function<void(GroupId)> after_promotion = {};  ///< joins the new ODE bodies
+  std::function<void(GroupId)> after_promotion = {};  ///< must join the new ODE bodies
 };
 
 }  // namespace lodestone
