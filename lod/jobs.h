@@ -1,5 +1,5 @@
-// How a step's work is spread over threads: oneTBB, or an engine's own jobs. What is computed does not depend
-// on it.
+// How the work of a step is spread over threads: by oneTBB, or by an engine's own jobs. The results do not
+// depend on it.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,7 @@
 
 namespace lodestone {
 
-/// A function of an index, by reference: cheap to pass, and nothing is allocated for it. What it refers to
-/// must outlive it.
+/// A reference to a function of an index: cheap to copy, without an allocation. The function must outlive it.
 class TaskRef {
  public:
   template <class Function>
@@ -23,11 +22,12 @@ class TaskRef {
   void (*call_)(const void*, std::int64_t);
 };
 
-/// Calls task(0) … task(count − 1), each once, in any order and on any threads, and returns when all are
+/// Must call task(0) … task(count − 1), each once, in any order and on any threads, and return when all are
 /// done.
 using JobRunner = std::function<void(std::int64_t count, TaskRef task)>;
 
-/// Calls body(begin, end) for pieces of [0, count), `grain` indices each; at once where there is one only.
+/// Calls body(begin, end) for the pieces of [0, count), of `grain` indices each (> 0; the last may have
+/// fewer). A single piece is done by the calling thread, without `jobs`.
 template <class Body>
 void run_in_pieces(const JobRunner& jobs, std::int64_t count, std::int64_t grain, const Body& body) {
   if (count <= grain) return count > 0 ? body(std::int64_t(0), count) : void();
@@ -36,7 +36,7 @@ void run_in_pieces(const JobRunner& jobs, std::int64_t count, std::int64_t grain
        }));
 }
 
-/// oneTBB's, on at most `threads` threads; one: the caller's own.
+/// A runner that uses at most `threads` threads of oneTBB; for 1 or less, the calling thread alone.
 JobRunner make_job_runner(int threads);
 
 }  // namespace lodestone

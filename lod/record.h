@@ -1,5 +1,5 @@
-// What is done to a manager, written down as it happens, and done again to see where it first comes out
-// otherwise.
+// Recordings: what is done to a manager is written down as it happens; a replay does it again, and finds the
+// first step that comes out differently.
 #pragma once
 
 #include <cstddef>
@@ -12,16 +12,17 @@
 
 namespace lodestone {
 
-/// Is given bytes to append to a recording. It must not change the manager.
+/// Called with the next bytes of a recording, to be appended to those before. It must not change the manager.
 using RecordFunction = std::function<void(std::span<const std::byte>)>;
 
+/// What Manager::replay found.
 struct ReplayResult {
-  int steps = 0;     ///< that were done again, up to the first that came out otherwise
-  bool same = true;  ///< all did as recorded
-  /// Where not: the first body, in order of creation, that is otherwise after that step; null where one is
-  /// missing.
+  int steps = 0;     ///< steps repeated, including the first that came out differently
+  bool same = true;  ///< whether all came out as recorded
+  /// If not: the first body, in order of creation, whose state differs after that step; null if only the
+  /// number of bodies differs.
   BodyId body = {};
-  std::string text = {};  ///< the same in words
+  std::string text = {};  ///< the result in words
 };
 
 }  // namespace lodestone
