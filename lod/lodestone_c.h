@@ -1,11 +1,16 @@
-/* Lodestone for C (C11) and for whatever calls C: the same as <lodestone/lod/manager.h>, which is the manual;
- * here is only what differs.
+/* Lodestone for C (C11) and for whatever calls C. It does the same as <lodestone/lod/manager.h>, which is the
+ * manual, with the same units, ranges and defaults; only what differs is said here.
  *
- * Every function that can fail returns LODESTONE_OK or why it failed, lodestone_error() says it in words;
- * nothing has changed then, and what it would have given is left alone. No exception leaves the library. SI
- * units, world frame right-handed. Pointers to input may be null only where their count is 0 or it is said;
- * an output of one thing that is null is not given. Lists that a function hands out belong to the manager and
- * last until its next step. Handles are used by one thread at a time. */
+ * - Results. Every function that can fail returns LODESTONE_OK, or the kind of failure, of which
+ *   lodestone_error() then tells more. After LODESTONE_BAD_INPUT nothing has changed, unless the manual says
+ *   otherwise (of a divided step, of a replay); after any failure outputs are as they were. No exception
+ *   leaves the library.
+ * - Pointers. Input must not be null, except where its count is 0 or where null is mentioned. An output may
+ *   be null, and is not written then; but the place of a new handle must not be null, nor an array of states,
+ *   poses or text to fill.
+ * - Lists that a function hands out belong to the manager, and are valid until its next step.
+ * - Handles. One thread at a time uses a handle. The caller releases or destroys those that he made.
+ * - SI units, unless a name ends in another (`_ms`, `_px`); world frame right-handed. */
 #ifndef LODESTONE_C_H
 #define LODESTONE_C_H
 
@@ -22,23 +27,26 @@ struct dxSpace;
 struct dxBody;
 struct dxGeom;
 
+/* Handles. */
 typedef struct lodestone_manager lodestone_manager;
 typedef struct lodestone_shape lodestone_shape;
 typedef struct lodestone_signature lodestone_signature;
 
+/* How a call ended. */
 typedef enum lodestone_result {
   LODESTONE_OK = 0,
-  LODESTONE_BAD_INPUT = 1,
+  LODESTONE_BAD_INPUT = 1, /* an argument or a file cannot be used: InputError */
   LODESTONE_OUT_OF_MEMORY = 2,
-  LODESTONE_FAILED = 3
+  LODESTONE_FAILED = 3 /* anything else; after a SimulationError the manager cannot be stepped */
 } lodestone_result;
 
-/* Why the last call on this thread that failed did so. Never null. */
+/* What the last call on this thread that failed had to say; empty before. Never null; valid until the next
+ * call on this thread that fails. */
 const char* lodestone_error(void);
-/* Of the library, LODESTONE_VERSION_STRING of <lodestone/lod/version.h>. */
+/* The library's version, as LODESTONE_VERSION_STRING of <lodestone/lod/version.h>. */
 const char* lodestone_version(void);
-/* Is called with the message of a bug of the library's before the process aborts, on the thread that met it.
- * Null: none. */
+/* From now on `handler` is called with the message of a bug in the library before the process aborts, on the
+ * thread that met it. Null: none. */
 void lodestone_set_assertion_handler(void (*handler)(void* context, const char* message), void* context);
 
 /* ---- Values ---- */
@@ -51,17 +59,20 @@ typedef struct lodestone_quat {
 } lodestone_quat;
 typedef struct lodestone_body {
   uint32_t index, generation;
-} lodestone_body; /* null: generation 0 */
+} lodestone_body; /* an id; null: generation 0 */
+/* An id of ground, with the same null. */
 typedef struct lodestone_ground {
   uint32_t index, generation;
 } lodestone_ground;
 
+/* See RigidState: m, unit quaternion, m/s, rad/s. */
 typedef struct lodestone_state {
   lodestone_vec3 position;
   lodestone_quat orientation;
   lodestone_vec3 velocity, angular_velocity;
 } lodestone_state;
 
+/* See Rung, and LevelChoice. */
 typedef enum lodestone_rung {
   LODESTONE_TABLES = 0,
   LODESTONE_SUPPORT = 1,
@@ -77,28 +88,32 @@ typedef enum lodestone_level_choice {
 
 /* ---- Shapes: made once, shared by any number of bodies and managers ---- */
 
+/* `sides`: whole edge lengths, m. The name is for messages and for the source of signatures. */
 lodestone_result lodestone_make_box(const char* name, lodestone_vec3 sides, lodestone_shape** shape);
-lodestone_result lodestone_make_sphere(double radius, lodestone_shape** shape);
-/* `faces`: three indices each, counter-clockwise from outside. */
+lodestone_result lodestone_make_sphere(double radius, lodestone_shape** shape); /* m; its name is "sphere" */
+/* `faces`: three indices into `vertices` for each face, counter-clockwise seen from outside: 3 · face_count
+ * numbers. See make_shape. */
 lodestone_result lodestone_make_mesh(const char* name, const lodestone_vec3* vertices, size_t vertex_count,
                                      const int32_t* faces, size_t face_count, lodestone_shape** shape);
-/* OBJ, PLY, STL, glTF or 3DS; its longest side becomes `size` m, 0: as it is. */
+/* An OBJ, PLY, STL, glTF or 3DS file, scaled so that its longest side is `size` m; 0: as it is in the file.
+ * The shape's name is `file`. */
 lodestone_result lodestone_load_mesh(const char* file, double size, lodestone_shape** shape);
-void lodestone_release_shape(lodestone_shape* shape); /* null too; bodies keep what they need */
+void lodestone_release_shape(lodestone_shape* shape); /* or null; bodies keep what they need */
 
 /* ---- Signatures: what the statistical rungs know of a shape under a contact law ---- */
 
-/* A file of `lodestone sign`, or its bytes. */
+/* From a file that `lodestone sign` wrote, or from its bytes. */
 lodestone_result lodestone_load_signature(const char* file, lodestone_signature** signature);
 lodestone_result lodestone_read_signature(const void* bytes, size_t size, lodestone_signature** signature);
-/* From the cache, or measured, which takes seconds, and cached; `threads` 0: all cores. */
+/* From the cache, or measured, which takes seconds, and cached. `threads` ≥ 0; 0: all cores. */
 lodestone_result lodestone_find_or_measure_signature(const lodestone_shape* shape, double restitution,
                                                      double friction, int32_t threads,
                                                      lodestone_signature** signature);
-void lodestone_release_signature(lodestone_signature* signature); /* null too; managers keep what they need */
+void lodestone_release_signature(lodestone_signature* signature); /* or null; managers keep what they need */
 
 /* ---- Settings ---- */
 
+/* The policies of <lodestone/lod/policy.h>. */
 typedef enum lodestone_policy_kind {
   LODESTONE_POLICY_DISTANCE = 0,
   LODESTONE_POLICY_BUDGET_MS = 1,
@@ -108,20 +123,22 @@ typedef enum lodestone_policy_kind {
   LODESTONE_POLICY_ERROR_BUDGET_WORK = 5
 } lodestone_policy_kind;
 
+/* See PolicySettings. Fields of other kinds of policy than `kind` are not looked at. */
 typedef struct lodestone_policy {
   lodestone_policy_kind kind;
-  double full_within, support_within;     /* m, LODESTONE_POLICY_DISTANCE */
-  double full_above_px, support_above_px; /* LODESTONE_POLICY_PROJECTED_SIZE */
-  double budget;                          /* ms or work units */
+  double full_within, support_within;     /* m; of LODESTONE_POLICY_DISTANCE */
+  double full_above_px, support_above_px; /* of LODESTONE_POLICY_PROJECTED_SIZE */
+  double budget;                          /* ms, or work units; of the policies with a budget */
   double hysteresis;
   int32_t min_dwell_frames, max_transitions_per_frame, most_full, most_support;
   double out_of_view_factor, look_ahead_s;
   bool contact_groups_together;
-  bool (*visible)(void* context, lodestone_vec3 center, double radius); /* null: by the frusta */
+  bool (*visible)(void* context, lodestone_vec3 center, double radius); /* null: whether in any frustum */
   double (*significance)(void* context, lodestone_body body);           /* null: 1 */
-  void* context;                                                        /* of both */
+  void* context;                                                        /* given to both */
 } lodestone_policy;
 
+/* See ManagerSettings::model, and SignatureTiming. */
 typedef enum lodestone_model {
   LODESTONE_MODEL_BY_POLICY = 0,
   LODESTONE_MODEL_TABLES = 1,
@@ -133,24 +150,26 @@ typedef enum lodestone_signature_timing {
   LODESTONE_SIGNATURES_IN_BACKGROUND = 2
 } lodestone_signature_timing;
 
-/* Calls task(task_context, 0) … task(task_context, count − 1), each once, on any threads, and returns when
- * all are done. */
+/* A lodestone_run_jobs must call task(task_context, 0) … task(task_context, count − 1), each once, in any
+ * order and on any threads, and return when all are done. */
 typedef void (*lodestone_task)(const void* task_context, int64_t index);
 typedef void (*lodestone_run_jobs)(void* context, int64_t count, lodestone_task task,
                                    const void* task_context);
 
-/* Options of `tables`; see TablesOptions. */
+/* See TablesOptions. */
 typedef struct lodestone_tables_options {
   bool interpolate, draw_height;
   int32_t radius_update_interval;
   bool rest_poses, nearest_rest_pose, paper_pair_rule, published;
 } lodestone_tables_options;
 
+/* See EventSettings. */
 typedef struct lodestone_event_settings {
   bool all_bodies;
   double least_speed, least_impulse;
 } lodestone_event_settings;
 
+/* See ManagerSettings. */
 typedef struct lodestone_settings {
   lodestone_vec3 gravity;
   uint64_t seed;
@@ -159,9 +178,9 @@ typedef struct lodestone_settings {
   double sleep_speed, sleep_time;
   lodestone_model model;
   lodestone_tables_options tables;
-  /* Null: found in the cache or measured. Else asked when a first body of a shape and law needs its
-   * signature, which is lent until it returns; null: there is none, and a step in which a body of the shape
-   * would be at `tables` is LODESTONE_BAD_INPUT. See ManagerSettings::signatures. */
+  /* Supplies signatures, as SignatureFunction says; null: they are found in the cache or measured. It may
+   * return null for none. The handle that it returns must stay valid until it is called again, or the manager
+   * is destroyed. */
   const lodestone_signature* (*signatures)(void* context, const char* shape_name, double restitution,
                                            double friction);
   void* signatures_context;
@@ -169,13 +188,14 @@ typedef struct lodestone_settings {
   lodestone_policy policy;
   double audit_ms;
   lodestone_event_settings events;
-  lodestone_run_jobs jobs; /* null: oneTBB's */
+  lodestone_run_jobs jobs; /* null: oneTBB's threads */
   void* jobs_context;
-  /* Null: all pairs may meet. See ManagerSettings::pair_filter. */
+  /* See ManagerSettings::pair_filter; null: all pairs may meet. */
   bool (*pair_filter)(void* context, lodestone_body first, lodestone_body second);
   void* pair_filter_context;
 } lodestone_settings;
 
+/* The defaults of PolicySettings with a DistancePolicy, and of ManagerSettings. */
 lodestone_policy lodestone_default_policy(void);
 lodestone_settings lodestone_default_settings(void);
 
@@ -183,13 +203,13 @@ lodestone_settings lodestone_default_settings(void);
 
 lodestone_result lodestone_create(const lodestone_settings* settings,
                                   lodestone_manager** manager); /* null settings: the defaults */
-/* On the caller's world and space (dWorldID, dSpaceID), which must outlive it. */
+/* In the caller's world and space (dWorldID, dSpaceID), which must outlive the manager. */
 lodestone_result lodestone_create_in(struct dxWorld* world, struct dxSpace* space,
                                      const lodestone_settings* settings, lodestone_manager** manager);
-void lodestone_destroy(lodestone_manager* manager); /* null too */
+void lodestone_destroy(lodestone_manager* manager); /* or null */
 
-/* Of a pair of materials the lower restitution and √(μ₁ μ₂) count unless a law is set. Material 0 is there
- * from the start. */
+/* Restitution 0 … 1, friction ≥ 0, density > 0 kg/m³. A pair of materials has the lower restitution and
+ * √(μ₁ μ₂), unless a law is set for it. Material 0 is there from the start. */
 lodestone_result lodestone_add_material(lodestone_manager* manager, double restitution, double friction,
                                         double density, int32_t* material);
 lodestone_result lodestone_replace_material(lodestone_manager* manager, int32_t material, double restitution,
@@ -209,17 +229,18 @@ lodestone_result lodestone_move_ground(lodestone_manager* manager, lodestone_gro
                                        const lodestone_state* state);
 lodestone_result lodestone_remove_ground(lodestone_manager* manager, lodestone_ground ground);
 bool lodestone_is_valid_ground(const lodestone_manager* manager,
-                               lodestone_ground ground); /* of a null manager none is */
-/* In a caller's world. */
+                               lodestone_ground ground); /* false if the manager is null */
+/* Only in a caller's world. */
 lodestone_result lodestone_include_body(lodestone_manager* manager, struct dxBody* ode_body);
 lodestone_result lodestone_exclude_body(lodestone_manager* manager, struct dxBody* ode_body);
 
 lodestone_result lodestone_set_policy(lodestone_manager* manager, const lodestone_policy* policy);
+/* See Viewpoint. */
 typedef struct lodestone_viewpoint {
-  lodestone_vec3 position, direction, up; /* direction zero: it sees all around */
+  lodestone_vec3 position, direction, up; /* a direction of 0 sees all around */
   double vertical_fov_rad, height_px, aspect;
 } lodestone_viewpoint;
-lodestone_viewpoint lodestone_default_viewpoint(lodestone_vec3 position);
+lodestone_viewpoint lodestone_default_viewpoint(lodestone_vec3 position); /* sees all around */
 lodestone_result lodestone_set_viewpoints(lodestone_manager* manager, const lodestone_viewpoint* viewpoints,
                                           size_t count);
 lodestone_result lodestone_set_gravity(lodestone_manager* manager, lodestone_vec3 gravity);
@@ -231,12 +252,14 @@ lodestone_result lodestone_set_event_settings(lodestone_manager* manager,
 
 /* ---- Bodies ---- */
 
+/* See BodyProperties. */
 typedef struct lodestone_properties {
   uint32_t category, collide;
   bool gravity, kinematic, allow_sleep;
   double linear_damping, angular_damping, max_angular_speed;
 } lodestone_properties;
 
+/* See BodyDefinition. */
 typedef struct lodestone_body_definition {
   const lodestone_shape* shape;
   lodestone_state state;
@@ -257,7 +280,7 @@ lodestone_result lodestone_add_body(lodestone_manager* manager, const lodestone_
                                     lodestone_body* body);
 lodestone_result lodestone_remove_body(lodestone_manager* manager, lodestone_body body);
 bool lodestone_is_valid(const lodestone_manager* manager,
-                        lodestone_body body); /* of a null manager none is */
+                        lodestone_body body); /* false if the manager is null */
 
 lodestone_result lodestone_set_level(lodestone_manager* manager, lodestone_body body,
                                      lodestone_level_choice choice);
@@ -280,17 +303,18 @@ lodestone_result lodestone_add_impulse(lodestone_manager* manager, lodestone_bod
 lodestone_result lodestone_sleep(lodestone_manager* manager, lodestone_body body);
 lodestone_result lodestone_wake(lodestone_manager* manager, lodestone_body body);
 
-/* Bodies that change rung together. Null functions: none of its joints may be taken off; see GroupJoints. */
+/* An id of bodies that change rung together; null: generation 0. */
 typedef struct lodestone_group {
   uint32_t index, generation;
 } lodestone_group;
+/* The two functions are those of GroupJoints: both, or both null. */
 lodestone_result lodestone_make_group(lodestone_manager* manager, const lodestone_body* bodies, size_t count,
                                       void (*before_demotion)(void* context, lodestone_group group),
                                       void (*after_promotion)(void* context, lodestone_group group),
                                       void* context, lodestone_group* group);
 lodestone_result lodestone_dissolve_group(lodestone_manager* manager, lodestone_group group);
 bool lodestone_is_valid_group(const lodestone_manager* manager,
-                              lodestone_group group); /* of a null manager none is */
+                              lodestone_group group); /* false if the manager is null */
 
 lodestone_result lodestone_get_state(const lodestone_manager* manager, lodestone_body body,
                                      lodestone_state* state);
@@ -304,10 +328,10 @@ lodestone_result lodestone_get_rung(const lodestone_manager* manager, lodestone_
 lodestone_result lodestone_is_asleep(const lodestone_manager* manager, lodestone_body body, bool* asleep);
 lodestone_result lodestone_get_collision_radius(const lodestone_manager* manager, lodestone_body body,
                                                 double* radius);
-/* Null unless it is full. */
+/* The dBodyID; null unless the body is full. */
 lodestone_result lodestone_get_ode_body(const lodestone_manager* manager, lodestone_body body,
                                         struct dxBody** ode_body);
-/* What decided a body's rung; see Rule. */
+/* See Rule. */
 typedef enum lodestone_rule {
   LODESTONE_RULE_FORCED = 0,
   LODESTONE_RULE_NEAR = 1,
@@ -327,8 +351,7 @@ typedef enum lodestone_rule {
   LODESTONE_RULE_CARRIES_FULL = 15
 } lodestone_rule;
 
-/* Why it has its rung; see Why. `in_view` and what is about pictures is as without viewpoints where there is
- * none. */
+/* Why a body has its rung; see Why. */
 typedef struct lodestone_reason {
   lodestone_rung rung;
   lodestone_rule rule;
@@ -339,13 +362,15 @@ typedef struct lodestone_reason {
 } lodestone_reason;
 lodestone_result lodestone_explain(const lodestone_manager* manager, lodestone_body body,
                                    lodestone_reason* reason);
-/* The text with its final zero, cut to `size`; the whole length without the zero into `length`. */
+/* Writes the sentence of Manager::why to `text`, with a final zero, cut to `size` bytes in all; nothing if
+ * `size` is 0. `length` becomes that of the whole sentence without the zero. */
 lodestone_result lodestone_why(const lodestone_manager* manager, lodestone_body body, char* text, size_t size,
                                size_t* length);
 
+/* As many states as bodies. */
 lodestone_result lodestone_read_states(const lodestone_manager* manager, const lodestone_body* bodies,
                                        size_t count, lodestone_state* states);
-/* Three floats and four (w first) for each body. */
+/* Three floats for each body's position (m), and four for its orientation, w first. */
 lodestone_result lodestone_read_poses(const lodestone_manager* manager, const lodestone_body* bodies,
                                       size_t count, float* positions_xyz, float* orientations_wxyz);
 
@@ -357,7 +382,7 @@ typedef struct lodestone_stage_times {
       full_ms, total_ms;
 } lodestone_stage_times;
 
-/* Since the manager was made; see Counters. */
+/* Counts since the manager was made; see Counters. */
 typedef struct lodestone_counters {
   int64_t ode_bodies_created, trimeshes_built, signatures_loaded, pair_phases, ode_messages, contacts_dropped,
       states_recovered, full_quick_steps, full_swallowed, full_passes_prevented, full_uneven_contacts,
@@ -365,10 +390,12 @@ typedef struct lodestone_counters {
       bodies_held_back;
 } lodestone_counters;
 
+/* See RungCost. */
 typedef struct lodestone_rung_cost {
   double predicted_ms, measured_ms, work;
 } lodestone_rung_cost;
 
+/* See StepReport. */
 typedef struct lodestone_report {
   int64_t step;
   double dt_s;
@@ -379,8 +406,8 @@ typedef struct lodestone_report {
   lodestone_counters counters;
 } lodestone_report;
 
-/* What the audit has found since the manager was made (lodestone_settings.audit_ms); see AuditReport.
- * Intervals are of 95 %. */
+/* What the audit has found since the manager was made (lodestone_settings.audit_ms); see AuditReport. From
+ * `…_least` to `…_most` are 95 % intervals. */
 typedef struct lodestone_audit_figure {
   double full, demoted, deviation, difference_least, difference_most;
 } lodestone_audit_figure;
@@ -391,7 +418,7 @@ typedef struct lodestone_audit {
 } lodestone_audit;
 
 lodestone_result lodestone_step(lodestone_manager* manager, double dt, lodestone_report* report);
-/* Around the caller's own dWorldStep, on his world alone; both in place of lodestone_step. */
+/* Before and after the caller's own dWorldStep, in place of lodestone_step; only in a caller's world. */
 lodestone_result lodestone_before_world_step(lodestone_manager* manager, double dt);
 lodestone_result lodestone_after_world_step(lodestone_manager* manager, lodestone_report* report);
 lodestone_result lodestone_get_report(const lodestone_manager* manager, lodestone_report* report);
@@ -399,6 +426,7 @@ lodestone_result lodestone_get_audit(const lodestone_manager* manager, lodestone
 lodestone_result lodestone_body_count(const lodestone_manager* manager, size_t* count);
 lodestone_result lodestone_state_hash(const lodestone_manager* manager, uint64_t* hash);
 
+/* See RungChange, ContactPhase, ContactSide and ContactEvent. */
 typedef struct lodestone_rung_change {
   lodestone_body body;
   lodestone_rung from, to;
@@ -419,8 +447,8 @@ typedef struct lodestone_contact_side {
   lodestone_contact_kind kind;
   lodestone_body body;
   lodestone_ground ground;
-  struct dxGeom* geom;    /* of the caller's ground; of his bodies where a query meets them */
-  struct dxBody* callers; /* a dynamic body of the caller's */
+  struct dxGeom* geom;    /* of the caller's ground; in a query also of his dynamic body */
+  struct dxBody* callers; /* the caller's dynamic body */
   int32_t material;
 } lodestone_contact_side;
 
@@ -431,7 +459,7 @@ typedef struct lodestone_contact_event {
   double impulse, speed;
 } lodestone_contact_event;
 
-/* What the last step did. */
+/* What the last step did, in lists. */
 lodestone_result lodestone_moved(const lodestone_manager* manager, const lodestone_body** bodies,
                                  size_t* count);
 lodestone_result lodestone_fell_asleep(const lodestone_manager* manager, const lodestone_body** bodies,
@@ -445,24 +473,28 @@ lodestone_result lodestone_contact_events(lodestone_manager* manager, const lode
 
 /* ---- Queries ---- */
 
+/* See QueryFilter. */
 typedef struct lodestone_query_filter {
   uint32_t categories;
-  bool bodies, ground, callers; /* the manager's, ground, dynamic bodies of the caller's */
+  bool bodies, ground, callers; /* the manager's bodies, ground, the caller's dynamic bodies */
   lodestone_body except;
 } lodestone_query_filter;
 
+/* See Ray and SphereSweep. */
 typedef struct lodestone_ray {
   lodestone_vec3 from, direction;
-  double length, radius; /* radius 0: a ray; else a sphere that is swept along it */
+  double length, radius; /* m; radius 0: a ray; > 0: a sphere that moves along it */
 } lodestone_ray;
 
+/* See BoxVolume and SphereVolume. */
 typedef struct lodestone_volume {
-  lodestone_vec3 sides; /* of a box; of a sphere all zero */
-  double radius;        /* of a sphere */
+  lodestone_vec3 sides; /* m, of a box; all 0: it is a sphere */
+  double radius;        /* m, of a sphere; not looked at for a box */
   lodestone_vec3 position;
-  lodestone_quat orientation;
+  lodestone_quat orientation; /* of a box */
 } lodestone_volume;
 
+/* See QueryHit. */
 typedef struct lodestone_hit {
   lodestone_contact_side who;
   lodestone_vec3 point, normal;
@@ -470,18 +502,19 @@ typedef struct lodestone_hit {
 } lodestone_hit;
 
 lodestone_query_filter lodestone_default_filter(void);
-/* Of each ray or sphere the nearest: `met[i]` says whether there is one, `hits[i]` what. Null filter: the
- * default. */
+/* The nearest hit of each ray or sphere: `met[i]` tells whether there is one, and `hits[i]` is written only
+ * then. Both have `count` places. A null filter is the default one, here and below. */
 lodestone_result lodestone_cast_rays(const lodestone_manager* manager, const lodestone_ray* rays,
                                      size_t count, const lodestone_query_filter* filter, bool* met,
                                      lodestone_hit* hits);
-/* Calls `found` with all that each ray or sphere meets, by distance, ray by ray. */
+/* Calls `found` with all that each ray or sphere meets, ray by ray and by distance, on the calling thread;
+ * `ray` is the index in `rays`. The hit is valid during the call. */
 lodestone_result lodestone_cast_rays_through(const lodestone_manager* manager, const lodestone_ray* rays,
                                              size_t count, const lodestone_query_filter* filter,
                                              void (*found)(void* context, size_t ray,
                                                            const lodestone_hit* hit),
                                              void* context);
-/* Calls `found` with each body and piece of ground that the volumes touch, volume by volume. */
+/* The same with each body and piece of ground that a volume touches, contains or lies in. */
 lodestone_result lodestone_overlap(const lodestone_manager* manager, const lodestone_volume* volumes,
                                    size_t count, const lodestone_query_filter* filter,
                                    void (*found)(void* context, size_t volume, const lodestone_hit* hit),
@@ -489,22 +522,23 @@ lodestone_result lodestone_overlap(const lodestone_manager* manager, const lodes
 
 /* ---- Snapshots and recordings ---- */
 
-/* Writes a snapshot of at most `capacity` bytes; its length into `size`. With a null buffer only that; a
- * buffer too small is LODESTONE_BAD_INPUT. */
+/* Writes a snapshot to `buffer`, which has `capacity` bytes, and its length to `size`; with a null buffer
+ * only its length. LODESTONE_BAD_INPUT if the buffer is too small. */
 lodestone_result lodestone_snapshot(const lodestone_manager* manager, void* buffer, size_t capacity,
                                     size_t* size);
 lodestone_result lodestone_restore(lodestone_manager* manager, const void* snapshot, size_t size,
                                    const lodestone_shape* const* shapes, size_t shape_count);
-/* Null function: no more. */
+/* `write` is called with the next bytes of the recording, valid during the call; null: ends the recording. */
 lodestone_result lodestone_set_record(lodestone_manager* manager,
                                       void (*write)(void* context, const void* bytes, size_t size),
                                       void* context);
 
+/* See ReplayResult. */
 typedef struct lodestone_replay_result {
   int32_t steps;
   bool same;
   lodestone_body body;
-  const char* text; /* the same in words, until the manager's next replay */
+  const char* text; /* the result in words, valid until the manager's next replay */
 } lodestone_replay_result;
 lodestone_result lodestone_replay(lodestone_manager* manager, const void* recording, size_t size,
                                   const lodestone_shape* const* shapes, size_t shape_count,
@@ -512,6 +546,7 @@ lodestone_result lodestone_replay(lodestone_manager* manager, const void* record
 
 /* ---- Hooks ---- */
 
+/* See <lodestone/lod/hooks.h>. */
 typedef enum lodestone_log_level {
   LODESTONE_LOG_INFO = 0,
   LODESTONE_LOG_WARNING = 1,
@@ -521,7 +556,7 @@ typedef struct lodestone_color {
   float red, green, blue;
 } lodestone_color;
 
-/* Null function: none. The text lasts during the call. */
+/* A null function: none. The text of a log is valid during the call. */
 lodestone_result lodestone_set_log(lodestone_manager* manager,
                                    void (*log)(void* context, lodestone_log_level level, const char* text),
                                    void* context);
@@ -529,6 +564,7 @@ lodestone_result lodestone_set_profile(lodestone_manager* manager,
                                        void (*begin)(void* context, const char* zone),
                                        void (*end)(void* context, const char* zone), void* context);
 
+/* See DrawSettings. */
 typedef struct lodestone_draw_settings {
   bool bodies, contacts, bounds;
   lodestone_color colors[3]; /* by lodestone_rung */
@@ -536,7 +572,7 @@ typedef struct lodestone_draw_settings {
   double normal_length;
 } lodestone_draw_settings;
 lodestone_draw_settings lodestone_default_draw_settings(void);
-/* Null functions: these are left out. Null settings: the defaults. */
+/* What has a null function is not drawn. Null settings: the defaults. */
 lodestone_result lodestone_draw(const lodestone_manager* manager,
                                 void (*line)(void* context, lodestone_vec3 from, lodestone_vec3 to,
                                              lodestone_color color),
