@@ -1,5 +1,5 @@
-// The vector types used throughout. World frame right-handed, SI units; quaternions map body axes to world
-// axes.
+// The vector types used throughout. The world frame is right-handed, units are SI; quaternions take body axes
+// to world axes.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,18 +25,19 @@ struct RigidState {
   Vec3 angular_velocity = Vec3::Zero();
 };
 
-/// m, m/s and rad/s, in each part of a state: beyond it no level holds a body.
+/// m, m/s and rad/s: the greatest absolute value of each coordinate of a position or velocity that a level
+/// keeps; a body beyond it is put back.
 inline constexpr double kStateLimit = 1e8;
 
-/// False for NaN.
+/// Whether each coordinate is within kStateLimit; false for NaN.
 inline bool is_within_limit(const Vec3& v) {
   return std::abs(v.x()) <= kStateLimit && std::abs(v.y()) <= kStateLimit && std::abs(v.z()) <= kStateLimit;
 }
 
-/// Below it (rad) Taylor series serve, exact to rounding and without a division.
+/// rad: below it Taylor series are used, exact to rounding and without a division.
 inline constexpr double kSmallAngle = 0.25;
-/// sin x / x and cos x for x² = `square`, |x| below kSmallAngle; of several side by side, too, so inlined
-/// where these are compiled for wider registers.
+/// sin x / x, and below cos x, for x² = `square` and |x| < kSmallAngle. `Numbers` may be several side by
+/// side; inlined, as these are compiled for wider registers.
 template <class Numbers>
 [[gnu::always_inline]] inline Numbers small_sine_over_angle(const Numbers& square) {
   return 1.0 - square * (1.0 / 6.0) *
@@ -51,6 +52,7 @@ template <class Numbers>
                               (1.0 - square * (1.0 / 30.0) *
                                          (1.0 - square * (1.0 / 56.0) * (1.0 - square * (1.0 / 90.0)))));
 }
+/// Of any angle, rad.
 inline std::pair<double, double> sine_and_cosine(double angle) {
   if (std::abs(angle) < kSmallAngle)
     return {angle * small_sine_over_angle(angle * angle), small_cosine(angle * angle)};
@@ -69,18 +71,18 @@ inline Quat rotation_from_vector(const Vec3& v) {
   return Quat(std::cos(half), 0.5 * sinc * v.x(), 0.5 * sinc * v.y(), 0.5 * sinc * v.z());
 }
 
-/// The least rotation that takes the direction of `from` to that of `to`, of any lengths; of opposite ones
-/// about some axis across. Here and below, behind the header: Eigen's decompositions cost a file that uses
-/// them seconds of compiling.
+/// The smallest rotation that takes the direction of `from` to that of `to`, which may have any length; for
+/// opposite directions it is about some axis across them. Here and below not inline, since Eigen's
+/// decompositions cost a file that uses them seconds of compiling.
 Quat rotation_between(const Vec3& from, const Vec3& to);
 
-/// Of a symmetric tensor: its moments, ascending, and as columns the axes that they are about, right-handed.
+/// The principal moments of a symmetric tensor, ascending, and the axes that they are about, as columns,
+/// right-handed.
 struct PrincipalAxes {
   Vec3 moments;
   Mat3 axes;
 };
 PrincipalAxes find_principal_axes(const Mat3& tensor);
-/// Ascending.
-Vec3 find_principal_moments(const Mat3& tensor);
+Vec3 find_principal_moments(const Mat3& tensor);  ///< the moments alone, ascending
 
 }  // namespace lodestone
