@@ -25,10 +25,10 @@ struct CollisionConfiguration {
   double speed_unit() const { return std::hypot(speed, spin); }
 };
 
-/// Six numbers in the frame (e1, e2, e3): (V_rigid − V_particle)/s, then RΩ⁺/s.
+/// A response: six numbers in the frame (e1, e2, e3), (V_rigid − V_particle)/s and then RΩ⁺/s.
 using Response = Eigen::Matrix<float, 6, 1>;
 
-/// Lower triangle, row by row, of the Cholesky factor of a response's covariance.
+/// The Cholesky factor of a response's covariance: its lower triangle, row by row.
 using ResponseFactor = std::array<float, 21>;
 
 /// How run-time draws follow the trials.
@@ -38,40 +38,40 @@ enum class ResponseDraw : std::uint8_t {
   empirical,    ///< one of the trials themselves
 };
 
-/// The approach of the contact point towards the plane over s: whether a collision is faster than ODE's
+/// How fast the contact point approaches the plane, over s: it tells whether a collision is faster than ODE's
 /// bounce_vel.
 struct Approach {
   float mean = 0.0f, deviation = 0.0f;
 };
 
-/// A trial kept for empirical draws, 16 bits a number.
+/// A trial kept for empirical draws, with 16 bits for each number.
 struct ResponseSample {
   std::array<std::int16_t, 6> response;  ///< over the table's sample_range; of 32767
   std::uint16_t approach;                ///< over s, over 2; of 65535
 };
 
-/// What the trials of each cell of a table gave. `factor` only for correlated draws, `first_sample` and
-/// `sample` only for empirical ones.
+/// What the trials of each cell of a table gave, by cell. `factor` is empty unless draws are correlated,
+/// `first_sample` and `sample` unless they are empirical.
 struct ResponseCells {
   std::vector<Response> mean, deviation;
-  std::vector<std::uint32_t> trials;  ///< behind each cell
+  std::vector<std::uint32_t> trials;  ///< number of trials of each cell
   std::vector<Approach> approach;
   std::vector<ResponseFactor> factor;
-  std::vector<std::uint32_t> first_sample;  ///< of each cell's run of `sample`; one more than there are cells
+  std::vector<std::uint32_t> first_sample;  ///< cells + 1: where each one's run of `sample` begins
   std::vector<ResponseSample> sample;
   float sample_range = 1.0f;
 };
 
-/// Responses over (θ, φ, α, ψ). ODE's impact law is the same at every speed above its bounce_vel, and so is
-/// it below: ‖V⁻‖ and ‖Ω⁻‖ enter through their ratio alone. Cell centres: θ = (i + ½)π/(2 n_theta), φ = (j +
-/// ½)π/n_phi, α = (k + ½)π/(2 n_alpha), ψ = 2π l/n_psi; cell index
+/// Responses over (θ, φ, α, ψ). ODE's impact law is the same at every speed above its bounce_vel, and the
+/// same at every speed below: so only the ratio of ‖V⁻‖ and ‖Ω⁻‖ matters. Cell centres:
+/// θ = (i + ½)π/(2 n_theta), φ = (j + ½)π/n_phi, α = (k + ½)π/(2 n_alpha), ψ = 2π l/n_psi; cell index
 /// ((i n_phi + j) n_alpha + k) n_psi + l. With n_psi = 1 a cell holds every ψ, as the paper's do.
 struct ResponseTable {
   int n_theta = 0, n_phi = 0, n_alpha = 0, n_psi = 1;
   ResponseCells cells;
   std::int64_t size() const { return std::int64_t(n_theta) * n_phi * n_alpha * n_psi; }
   CollisionConfiguration center(std::int64_t cell) const;  ///< at a speed unit of 1 m/s
-  /// Whose centre is nearest along every axis.
+  /// The cell whose centre is nearest along every axis.
   std::int64_t find_cell(const CollisionConfiguration& c) const;
 };
 
@@ -86,7 +86,7 @@ struct SpeedTable {
     return std::int64_t(n_theta) * n_phi * std::int64_t(speeds.size() * spins.size());
   }
   CollisionConfiguration center(std::int64_t cell) const;
-  /// Whose centre is nearest along every axis.
+  /// The cell whose centre is nearest along every axis.
   std::int64_t find_cell(const CollisionConfiguration& c) const;
 };
 

@@ -1,12 +1,12 @@
 // A shape's statistical signature (section 3.2 of Hsu and Keyser, Statistical Simulation of Rigid Bodies,
-// 2009): what its collisions and settling look like under ODE, measured beforehand (measure.h), stored
+// 2009): how it collides and settles under ODE. It is measured beforehand (measure.h), stored
 // (signature_file.h) and looked up while simulating.
 //
-// Everything is dimensionless, so that one signature serves all sizes and densities of a shape: lengths over
-// R (the greatest distance of a vertex from the centre of mass), speeds over s = √(v² + R²ω²), times over
-// √(R/g).
+// Everything is dimensionless, so that one signature serves all sizes and densities of a shape: lengths are
+// divided by R (the greatest distance of a vertex from the centre of mass), speeds by s = √(v² + R²ω²), times
+// by √(R/g).
 //
-// The symbols of collisions are listed in response.h.
+// The symbols of collisions are listed in response.h. Numbers in parentheses are sections of the paper.
 #pragma once
 
 #include <array>
@@ -29,10 +29,11 @@ struct RestPose {
   Vec3 normal = Vec3::UnitZ();  ///< the plane's normal in body axes: n_rest
   double height = 0.0;          ///< of the centre of mass over the plane, over R: h_rest
   double frequency = 0.0;       ///< fraction of settling trials that ended in it
-  double basin = 0.0;  ///< fraction of orientations from which the body, let down without speed, tips into it
+  double basin = 0.0;  ///< fraction of orientations from which the body, set down without speed, tips into it
 };
 
-/// One frame of a settling clip, 16 bits a number (encode_frame and decode_frame in settling_clips.h).
+/// One frame of a settling clip, with 16 bits for each number (encode_frame and decode_frame in
+/// settling_clips.h).
 struct ClipFrame {
   std::array<std::int16_t, 3>
       position;  ///< x, y from the clip's start over its `extent`, z over kClipHeightRange; of 32767
@@ -41,35 +42,37 @@ struct ClipFrame {
   std::array<std::int16_t, 3> angular_velocity;  ///< over kClipSpeedRange √(g/R); of 32767
 };
 
-/// ODE's own settling from low energy to rest on a horizontal plane, recorded (position over R).
+/// A recording of ODE's own settling, from low energy to rest on a horizontal plane.
 struct SettlingClip {
-  std::uint32_t first_frame = 0, frames = 0;  ///< run of Signature::clip_frames
-  float extent = 1.0f;                        ///< greatest |x|, |y| in it, over R
+  std::uint32_t first_frame = 0, frames = 0;  ///< its frames in Signature::clip_frames: the first, how many
+  float extent = 1.0f;                        ///< greatest |x| or |y| in it, over R
 };
 
-/// A frame of a clip in contact with the plane, where a body may join it.
+/// A frame of a clip in contact with the plane: there a body may join the clip.
 struct ClipEntry {
   std::uint32_t clip = 0, frame = 0;  ///< frame counted within the clip
 };
 
-/// When a single-collision trial stops.
+/// When the trial of a single collision ends.
 enum class TrialEnd : std::uint8_t {
-  first_impulse,  ///< the paper's
+  first_impulse,  ///< after the first impulse, as in the paper
   leaves_plane,   ///< when the body flies off without another impact
 };
 
-/// How a signature is measured; part of its identity.
+/// How a signature is measured; part of its identity. Ranges, outside which measuring throws InputError:
+/// numbers of cells 1 … 1000, height_samples 2 … 1e7, held_out_conditions and clips 0 … 1e7, other counts 1 …
+/// 1e7, table_error and rest_pose_frequency_min 0 … 1.
 struct SignatureSettings {
   ContactLaw law;
   TrialEnd trial_end = TrialEnd::leaves_plane;
   bool paper_grid = false;  ///< responses over the paper's θ 7 × φ 10 × ‖V‖ 26 × ‖Ω‖ 16, 30 trials each,
                             ///< instead of over (θ, φ, α, ψ)
-  int n_theta = 7, n_phi = 10, n_alpha = 16;  ///< θ and φ as in the paper; α stands for its ‖V‖ and ‖Ω‖
-  int n_psi = 1;                              ///< 1: every ψ in one cell, as in the paper
+  int n_theta = 7, n_phi = 10, n_alpha = 16;  ///< cells: θ, φ as in the paper, α for its ‖V‖ and ‖Ω‖
+  int n_psi = 1;                              ///< cells; 1: every ψ in one, as in the paper
   ResponseDraw draw = ResponseDraw::independent;  ///< what is kept for draws beyond the independent ones
   int trials_per_cell = 60;
   double table_error = 0.0;  ///< above 0: cells get trials until no mean has a greater standard error, over s
-  int most_trials_per_cell = 4000;  ///< even so
+  int most_trials_per_cell = 4000;  ///< then no cell gets more
   int held_out_conditions =
       500;  ///< random ones, with 16 trials each kept out of the tables, that certify each table
   int height_samples = 16, height_trials = 2000;
@@ -104,13 +107,13 @@ struct TableCertificate {
       0.0;  ///< what the same greatest standard error would take with the same number of trials in each cell
 };
 
-/// Pure data; immutable once made.
+/// A shape's signature under a contact law. Pure data, immutable once made.
 struct Signature {
-  std::uint64_t shape_hash = 0;  ///< Shape::content_hash that it was measured for
+  std::uint64_t shape_hash = 0;  ///< Shape::content_hash of the shape that it was measured for
   SignatureSettings settings;
   std::string shape_name;
-  std::uint32_t mesh_vertices = 0, mesh_faces = 0;  ///< of the shape that it was measured for
-  std::string versions;  ///< of the format, the measuring code and ODE that made it
+  std::uint32_t mesh_vertices = 0, mesh_faces = 0;  ///< counts of the shape that it was measured for
+  std::string versions;  ///< of the file format, the measuring code and ODE that made it
   CollisionHeights collision_heights;
   ResponseTable bouncing;      ///< approach above ODE's bounce_vel; empty where measured on the paper's grid
   ResponseTable non_bouncing;  ///< below it, where restitution is 0
