@@ -153,7 +153,7 @@ void Choose::look_at(std::uint32_t body, StepReport& report) {
   const bool settled =
       is.open.one() && is.open.has(level.rung) && !level.newcomer && level.rung != Rung::full;
   if (settled && !budgeted() && !grouped) {
-    level.reason = Rule::forced;
+    level.reason = rule_for_one(level);
     return;
   }
   LevelCandidate candidate = make_candidate(body, is.open, is.asleep());

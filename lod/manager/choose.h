@@ -34,6 +34,9 @@ struct RungChanges {
   std::vector<Change> promote, demote;
 };
 
+/// Why a body has one rung alone that is open to it, by its own settings.
+Rule rule_for_one(const BodyLevel& level);
+
 class Choose {
  public:
   /// `model`: that all statistical bodies have which the caller leaves to the manager.

@@ -18,6 +18,8 @@ constexpr double kErrorOfSleepers = 0.01;
 
 constexpr double kMostPixels = 1e4;
 
+}  // namespace
+
 Rule rule_for_one(const BodyLevel& level) {
   if (level.waits_for_signature && level.choice != LevelChoice::full && level.choice != LevelChoice::support)
     return Rule::signature_pending;
@@ -26,8 +28,6 @@ Rule rule_for_one(const BodyLevel& level) {
              ? Rule::rung_range
              : Rule::forced;
 }
-
-}  // namespace
 
 // One that sleeps at `tables` costs nothing there, and a budget has nothing to gain from moving it to
 // `support`.

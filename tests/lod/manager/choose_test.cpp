@@ -219,6 +219,9 @@ TEST(Choose, TheCallersChoiceGoesBeforeThePolicy) {
   manager.set_rung_range(near, Rung::tables, Rung::support);
   manager.step(kFrame);
   EXPECT_EQ(manager.rung(near), Rung::support);
+  manager.set_rung_range(near, Rung::support, Rung::support);
+  manager.step(kFrame);
+  EXPECT_EQ(manager.explain(near).rule, Rule::rung_range);
   manager.set_rung_range(far, Rung::full, Rung::full);
   manager.step(kFrame);
   EXPECT_EQ(manager.rung(far), Rung::full);
