@@ -1,5 +1,5 @@
 // Bodies of `tables`, in dense arrays. They meet each other as hulls that touch in one point, along the best
-// of four separating axes (as published: as spheres). Their part in stage 3 of a step:
+// of five separating axes (as published: as spheres). Their part in stage 3 of a step:
 // - a start: radii and reaches
 // - b near pairs (cells), their contacts, and which sleepers these wake
 // - c all these contacts are answered, one after the other
