@@ -24,7 +24,6 @@ struct ContactScene {
   bool asleep(Participant p) const {
     return p.is_statistical() ? body(p).motion == Motion::asleep : neighbor(p).asleep;
   }
-  bool is_borne_up(Participant p) const { return p.is_statistical() && body(p).borne_up; }
   const Shape& shape(Participant p) const {
     return p.is_statistical() ? *kind_of(body(p)).shape : *neighbor(p).shape;
   }
@@ -48,10 +47,11 @@ struct ContactScene {
   const BodyProperties& properties(Participant p) const { return world.properties_of(owner(p)); }
   /// m/s², as it acts on the body.
   Vec3 gravity(Participant p) const { return properties(p).gravity ? world.gravity : Vec3(Vec3::Zero()); }
-  /// m/s², of forces; those on bodies of `tables` are in their velocities.
+  /// m/s², of forces; those on bodies of `tables` are in their velocities, but for what bears them.
   Vec3 pushed(Participant p) const {
     if (p.is_full()) return neighbor(p).force / neighbor(p).mass;
-    return p.is_statistical() ? world.force_on(std::int32_t(p.index())).acceleration : Vec3(Vec3::Zero());
+    if (!p.is_statistical()) return Vec3::Zero();
+    return world.force_on(std::int32_t(p.index())).acceleration + body(p).borne;
   }
   /// Whether any force or torque but gravity acts on it.
   bool is_forced(Participant p) const {

@@ -75,9 +75,8 @@ void Crowd::note_presses(const ContactScene& scene, double time) {
     if (!on_still || !p.is_statistical()) continue;
     m.spared = float((scene.gravity(p) + scene.pushed(p) - scene.world.gravity).dot(m.normal) * time);
   }
-  const auto is_pushed = [&](const FullNeighbor& body) { return !body.force.isZero(0.0); };
-  const bool any =
-      (scene.world.forces && !scene.world.forces->empty()) || std::ranges::any_of(scene.neighbors, is_pushed);
+  const auto is_pushed = [&](Participant p) { return !p.is_ground() && !scene.pushed(p).isZero(0.0); };
+  const bool any = std::ranges::any_of(participants_, is_pushed);
   if (!any) return;
   const auto pushed = [&](std::int32_t index) {
     return index < 0 || solver_bodies_[std::size_t(index)].inverse_mass == 0.0

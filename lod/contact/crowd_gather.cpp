@@ -137,7 +137,6 @@ void Crowd::add_pair_contacts(const ContactScene& scene, std::span<const CrowdCo
       keys_[i] = contact_key(scene.owner(first), scene.owner(second));
       m.normal = contact.normal, m.law = scene.law(first, second);
       m.known = m.to_forget = false, m.pressed = m.spared = 0.0f, m.most_impulse = kUnbounded;
-      if (scene.is_borne_up(first) || scene.is_borne_up(second)) m.law.restitution = 0.0;
       m.count = std::uint32_t(contact.manifold.count);
       for (std::uint32_t k = 0; k < m.count; ++k) {
         const auto& [point, gap] = contact.manifold.points[k];

@@ -71,13 +71,14 @@ void Crowd::move_bodies(const ContactScene& scene, double time) {
     // What falls with all that it touches is at no rest, however slow. (Spheres that are guests here are
     // carried by others that this solver knows nothing of.)
     const Vec3 falls = scene.acceleration(p);
-    if (!body.is_sphere() && !body.borne_up &&
+    if (!body.is_sphere() &&
         (solved.velocity - body.velocity).dot(falls) > kFalling * falls.squaredNorm() * time)
       body.quiet_time = std::max(0.0f, body.quiet_time - 2.0f * float(time));
     body.in_great_heap = solved.in_great_heap;
     body.pinned = false;
     body.velocity = solved.velocity;
     body.spin += added;
+    resist_rolling(body, time);
     body.position += body.velocity * left;
     body.orientation = advance_orientation(body.orientation, body.spin, kind, left).normalized();
     ++body.events;
@@ -105,7 +106,7 @@ void Crowd::give_to_full(const ContactScene& scene, const CrowdTouch& touch) {
     for (const CrowdPoint& point : std::span(points_).subspan(m.begin, m.count)) {
       const auto give = [&](Participant to, Participant from, const Vec3& impulse, const Vec3& arm) {
         if (!to.is_full() || scene.neighbor(to).asleep || scene.properties(to).kinematic) return;
-        const bool hits = point.bounces && !scene.is_borne_up(from);
+        const bool hits = point.bounces;
         FullNeighbor& full = scene.neighbor(to);
         Impulse& share = !hits                                   ? full.push
                          : is_backed(to.index(), impulse, touch) ? full.backed_hit
@@ -113,7 +114,7 @@ void Crowd::give_to_full(const ContactScene& scene, const CrowdTouch& touch) {
         if (hits) full.fastest_hit = std::max(full.fastest_hit, double(point.blow));
         const bool moves =
             from.is_statistical() && !scene.asleep(from) && scene.body(from).quiet_time == 0.0f;
-        scene.neighbor(to).carried |= moves;
+        scene.neighbor(to).carried |= moves && !impulse.isZero(0.0);
         share.linear += impulse;
         share.angular += arm.cross(impulse);
       };

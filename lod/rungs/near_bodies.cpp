@@ -249,6 +249,7 @@ void NearBodies::move_alone(SupportLevel& support, std::span<Guest> guests, std:
   StatisticalBody& body = support.bodies()[std::size_t(index)];
   StepWorld around = world();
   around.planes = join_planes(ground_.planes(), solids_.faces().of(index));
+  around.gravity += body.borne;
   if (!body.is_sphere()) {
     if (body.alone_on_solid) around.solids = &ground_;
     tally = step_support_body(body, kinds_[body.kind], around, time, SupportSettings::of_tables());
@@ -257,6 +258,7 @@ void NearBodies::move_alone(SupportLevel& support, std::span<Guest> guests, std:
   around.log = nullptr;  // where it touches nobody in the end, the tables level moves it once more
   tally = step_tables_body(body, guests[std::size_t(index - support.size())].resting, kinds_[body.kind],
                            around, time, tables_);
+  resist_rolling(body, time);
 }
 
 // Who sleeps holds still; where it would not, it wakes, and what touches it is solved once more.

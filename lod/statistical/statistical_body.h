@@ -59,10 +59,6 @@ struct StatisticalBody {
   bool crowded = false;         ///< touches another body in this step
   bool on_solid = false;        ///< touches solids of the ground in this step that are more than planes to it
   bool alone_on_solid = false;  ///< touches these and nothing that moves, so it is moved by itself
-  /// A guest from `tables` whose contacts there were solved with the steady load that hulls lay on it.
-  /// Without that load, which is not yet applied here, it would seem to rise: so its contacts do not bounce,
-  /// and it does not count as falling.
-  bool borne_up = false;
   bool in_great_heap = false;  ///< is in a great island (IslandKind::great); asleep: was, when last awake
   bool on_edge = false;        ///< slow and in a crowd, but not over an area of what it stands on (Footing)
   /// So deep in a body of many times its mass, or in one that much lighter, that it is not moved out.
@@ -75,9 +71,22 @@ struct StatisticalBody {
   float placed = 0.0f;
   float eased = 0.0f;  ///< s, time left in which overlaps brought from another rung are undone slowly
 
+  /// m/s², of a guest from `tables`: how bodies of its own rung bear it through the step, against gravity and
+  /// the steady load that hulls lay on it.
+  Vec3 borne = Vec3::Zero();
+  /// m²/s², torque over mass: what those that bear it resist its rolling with, at most.
+  float rolling_resistance = 0.0f;
+
   bool is_sphere() const { return sphere_radius > 0.0f; }
   bool is_solved_in_crowd() const { return crowded || (on_solid && !alone_on_solid); }
 };
+
+/// Takes from the turning of a guest what those that bear it resist in `time` seconds.
+inline void resist_rolling(StatisticalBody& body, double time) {
+  if (body.rolling_resistance == 0.0f) return;
+  const double turning = body.spin.norm(), resisted = double(body.rolling_resistance) * time;
+  body.spin *= resisted < turning ? 1.0 - resisted / turning : 0.0;
+}
 
 /// Kinetic energy over mass, J/kg, with the true inertia.
 inline double kinetic_energy(const StatisticalBody& body, const Shape& shape) {

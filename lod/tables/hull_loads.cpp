@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace lodestone {
 
@@ -41,13 +42,23 @@ const Vec3* HullLoads::steady_on(std::int64_t place) const {
   return load ? &load->steady : nullptr;
 }
 
+const Vec3* HullLoads::borne_of_sleeper(std::int64_t place) const {
+  const Load* load = load_of(place);
+  return load ? &load->borne : nullptr;
+}
+
+void HullLoads::keep_as_it_was(std::int64_t place) {
+  if (const Load* load = load_of(place)) new_loads_.push_back(*load);
+}
+
 // What is there in two steps running; and where the hulls press up or down less than was expected, what bore
 // the body must not fling it. Along the ground, and where nothing weighs anything, momentum is kept. What a
 // blow gives up or down is no load.
-void HullLoads::keep(std::int64_t place, const Vec3& before, StatisticalBody& after) {
+void HullLoads::keep(std::int64_t place, const StatisticalBody& before, StatisticalBody& after) {
   const Load* known = load_of(place);
   const Vec3 up = -settings_.gravity.normalized(),
-             last = (after.velocity - before) / constants_.wide_time - settings_.gravity,
+             last =
+                 (after.velocity - before.velocity) / constants_.wide_time - settings_.gravity - before.borne,
              lasts = after.struck ? Vec3(last - last.dot(up) * up) : last,
              earlier = known ? known->last : Vec3(Vec3::Zero()),
              expected = known ? known->steady : Vec3(Vec3::Zero());
@@ -55,14 +66,23 @@ void HullLoads::keep(std::int64_t place, const Vec3& before, StatisticalBody& af
   for (int axis = 0; axis < 3; ++axis)
     if (lasts[axis] * earlier[axis] > 0.0)
       steady[axis] = std::abs(lasts[axis]) < std::abs(earlier[axis]) ? lasts[axis] : earlier[axis];
-  new_loads_.push_back(
-      {std::uint32_t(spheres_.slot[std::size_t(place)]), spheres_.owner[std::size_t(place)], lasts, steady});
+  new_loads_.push_back({.slot = std::uint32_t(spheres_.slot[std::size_t(place)]),
+                        .owner = spheres_.owner[std::size_t(place)],
+                        .last = lasts,
+                        .steady = steady,
+                        .borne = before.borne});
   const double borne = expected.dot(up);
   if (borne != 0.0)
     after.velocity += std::max(0.0, 1.0 - last.dot(up) / borne) * borne * constants_.wide_time * up;
 }
 
+// Of those that sleep it stays.
 void HullLoads::finish() {
+  std::ranges::copy_if(loads_, std::back_inserter(new_loads_), [this](const Load& load) {
+    if (load.slot >= spheres_.place_of_slot.size()) return false;
+    const std::int64_t place = spheres_.place_of_slot[load.slot];
+    return place >= spheres_.awake && load.owner == spheres_.owner[std::size_t(place)];
+  });
   std::ranges::sort(new_loads_, {}, &Load::slot);
   for (Load& load : new_loads_) {
     const std::int64_t place = spheres_.place_of_slot[load.slot];

@@ -22,8 +22,12 @@ class HullLoads {
   void take_back();
   /// m/s²: what of the last step's was there in the step before, too; null for whom no hull pressed.
   const Vec3* steady_on(std::int64_t place) const;
-  /// Of a guest that hulls have moved; `before` in m/s. Takes from it what would fling it.
-  void keep(std::int64_t place, const Vec3& before, StatisticalBody& after);
+  /// m/s²: how its like bore a sleeper in its last step awake; null for whom no hull pressed in it.
+  const Vec3* borne_of_sleeper(std::int64_t place) const;
+  /// Of a guest that hulls have moved from `before`. Takes from it what would fling it.
+  void keep(std::int64_t place, const StatisticalBody& before, StatisticalBody& after);
+  /// Of one that was woken in the midst of the step: what pressed it when it fell asleep does still.
+  void keep_as_it_was(std::int64_t place);
   /// After all have moved: what was kept is of the last step.
   void finish();
   /// Who is pressed by hulls and lies on its like: the two are answered one after the other, and leave it a
@@ -37,6 +41,7 @@ class HullLoads {
     std::uint32_t slot = 0, owner = 0;
     Vec3 last = Vec3::Zero();    // m/s², in the last step
     Vec3 steady = Vec3::Zero();  // m/s²: what of it was there in the step before, too
+    Vec3 borne = Vec3::Zero();   // m/s²: StatisticalBody::borne in the last step
     Vec3 place = Vec3::Zero();   // m, of its centre, at the step's end
     double moved = 1e300;        // m, since the end of the one before
   };
@@ -51,7 +56,8 @@ class HullLoads {
   const StepConstants& constants_ = scene_.constants;
   SphereStep& step_ = scene_.step;
 
-  std::vector<Load> loads_, new_loads_;  // of the last step's guests, by slot; of this one's
+  // By slot: of the last step's guests, and of those that were in their last step awake; of this step's.
+  std::vector<Load> loads_, new_loads_;
 };
 
 }  // namespace lodestone

@@ -5,6 +5,15 @@
 #include "lod/tables/tables_level.h"
 
 namespace lodestone {
+namespace {
+
+// Of `given` what bears `load`, or a part of it.
+Vec3 part_against(const Vec3& load, const Vec3& given) {
+  const double all = load.squaredNorm();
+  return all > 0.0 ? Vec3(-std::clamp(-given.dot(load) / all, 0.0, 1.0) * load) : Vec3(Vec3::Zero());
+}
+
+}  // namespace
 
 void TablesLevel::describe(Guest& guest) const {
   const auto i = std::int64_t(place_of(guest.slot));
@@ -27,14 +36,20 @@ StatisticalBody TablesLevel::guest_body(const Guest& guest) const {
   } else if (constants_.hulls) {
     body.sphere_radius = radius_at_ground(body, kind_of(i));  // what it rests on it does not leave as a guest
   }
+  const auto bear = [&](const Vec3& borne) {
+    body.borne = borne;
+    body.rolling_resistance = float(borne.norm()) * kinds_.rolling_lever[spheres_.kind[std::size_t(i)]];
+  };
   if (i < spheres_.awake && step_.touches(i)) {
-    body.velocity = step_.velocity(i) - settings_.gravity * constants_.wide_time;
-    if (const Vec3* steady = loads_.steady_on(i)) {
-      body.velocity -= *steady * constants_.wide_time;
-      body.borne_up = !steady->isZero(0.0);
-    }
+    const Vec3* steady = loads_.steady_on(i);
+    const Vec3 load = steady ? Vec3(settings_.gravity + *steady) : settings_.gravity;
+    const Vec3 given = (step_.velocity(i) - spheres_.velocity(i)) / constants_.wide_time - load;
+    bear(part_against(load, given));
+    body.velocity = step_.velocity(i) - (load + body.borne) * constants_.wide_time;
     body.spin += step_.added_spin(i);
     body.position += near_ground_.above_faces(i, step_.push_out(i));
+  } else if (i >= spheres_.awake && !guest.on_hull) {
+    if (const Vec3* borne = loads_.borne_of_sleeper(i)) bear(*borne);
   }
   if (spheres_.clip[std::size_t(i)] >= 0) body.motion = Motion::dynamic;
   return body;
@@ -73,11 +88,14 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
     const std::size_t i = place_of(guest.slot);
     if (guest.carried) carried_.add_guest(std::int64_t(i));
     StatisticalBody body = bodies[k];
+    const Vec3 unpressed = before[k].velocity + before[k].borne * constants_.wide_time;
     // What nothing stops would only go through it.
-    if (guest.touched && !guest.carried && body.velocity.squaredNorm() > before[k].velocity.squaredNorm())
-      driven_.add_guest(std::int64_t(i), before[k].position, before[k].velocity.norm());
+    if (guest.touched && !guest.carried && body.velocity.squaredNorm() > unpressed.squaredNorm())
+      driven_.add_guest(std::int64_t(i), before[k].position, unpressed.norm());
     if (guest.touched && !guest.on_hull && step_.touches(std::int64_t(i)))
-      loads_.keep(std::int64_t(i), before[k].velocity, body);
+      loads_.keep(std::int64_t(i), before[k], body);
+    else if (guest.touched && !guest.on_hull && std::int64_t(i) >= were_awake)
+      loads_.keep_as_it_was(std::int64_t(i));
     clips_.end(std::int64_t(i));
     if (guest.on_hull) {
       hulls_.take_from_edge(std::int64_t(i), body);
