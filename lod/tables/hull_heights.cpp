@@ -13,7 +13,6 @@ namespace {
 
 // Of its hull's size, the least as which others meet a concave shape, whatever of its hull it fills.
 constexpr double kLeastSolid = 0.84;
-constexpr double kRolling = 0.2;  // that piles come to rest when ODE's do
 
 Vec3 direction_at(int column, int row) {
   const double x = 2.0 * column / kHullHeightSide - 1.0, y = 2.0 * row / kHullHeightSide - 1.0,
@@ -108,7 +107,7 @@ double find_rolling_lever(const Shape& shape) {
       sum += solid_angle * direction.cross(shape.hull.vertices[std::size_t(vertex)]).norm();
       solid_angles += solid_angle;
     }
-  return kRolling * sum / solid_angles;
+  return kRollingShare * sum / solid_angles;
 }
 
 void sample_hull(const Shape& shape, const HullMaps& maps) {

@@ -43,9 +43,12 @@ void sample_hull(const Shape& shape, const HullMaps& maps);
 /// along within 17° of its normal, 1 elsewhere and where nobody knows (null).
 void find_unsteady(const RestingFaces* stands, std::span<const lane::Row> faces, std::span<float> unsteady);
 
+/// Of the mean lever, for spheres among their like: with it piles come to rest when ODE's do.
+inline constexpr double kRollingShare = 0.2;
+
 /// m, of the rolling resistance of hulls among others: a sphere rolls on where a hull lies on a face or falls
 /// from edge to edge, and each of these holds it by its weight times what its lowest point lies beside the
-/// centre of mass. Part of the mean of that over all directions; 0 of a ball.
+/// centre of mass. kRollingShare of the mean of that over all directions; 0 of a ball.
 double find_rolling_lever(const Shape& shape);
 
 namespace lane {
