@@ -36,11 +36,12 @@ StatisticalBody TablesLevel::guest_body(const Guest& guest) const {
   } else if (constants_.hulls) {
     body.sphere_radius = radius_at_ground(body, kind_of(i));  // what it rests on it does not leave as a guest
   }
-  // What turns it are hulls, at its edges: there its own edges hold it wholly.
+  // What turns it are hulls, at its edges: there its own edges hold it wholly. (The paper's spheres roll.)
   const auto bear = [&](const Vec3& borne) {
     body.borne = borne;
-    body.rolling_resistance =
-        float(borne.norm() / kRollingShare) * kinds_.rolling_lever[spheres_.kind[std::size_t(i)]];
+    if (constants_.hulls)
+      body.rolling_resistance =
+          float(borne.norm() / kRollingShare) * kinds_.rolling_lever[spheres_.kind[std::size_t(i)]];
   };
   if (i < spheres_.awake && step_.touches(i)) {
     const Vec3* steady = loads_.steady_on(i);
