@@ -78,6 +78,19 @@ TEST(CrowdOfBoxes, AFullNeighbourIsGivenTheOppositeImpulse) {
   }
 }
 
+// What moves and is near it, but gives it nothing, does not keep it awake.
+TEST(CrowdOfBoxes, OnlyWhoGivesAnImpulseCarriesAFullNeighbour) {
+  for (const double speed : {0.2, -0.2}) {
+    CrowdScene scene;
+    const auto cube = box_shape({0.2, 0.2, 0.2});
+    const Participant a = scene.add(cube, 2.0, at({-0.1, 0, 0}, {speed, 0, 0})),
+                      b = scene.add_full(cube, 3.0, at({0.1, 0, 0}));
+    scene.step(kCrowdStep, {{a, b}});
+    ASSERT_EQ(scene.contacts.size(), 1U);
+    EXPECT_EQ(scene.neighbors[0].carried, speed > 0.0);
+  }
+}
+
 // Three cubes on a plane, for two seconds: they stand, though nothing but this holds them.
 TEST(CrowdOfBoxes, AStackStands) {
   CrowdScene scene;
