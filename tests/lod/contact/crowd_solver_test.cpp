@@ -269,6 +269,33 @@ TEST(CrowdSolver, CarriesAWeightThroughALightBody) {
   }
 }
 
+// Of two points of one pair, on a line that is askew to their normals, no motion closes the one and not the
+// other as they ask: sweeps went on to press them against each other until friction gave way.
+TEST(CrowdSolver, PointsThatNoMotionSatisfiesDoNotPressEachOther) {
+  SolverCrowd crowd;
+  for (const double mass : {1.0, 100.0}) {
+    SolverBody body;
+    body.inverse_mass = 1.0 / mass;
+    body.inverse_inertia = Mat3::Identity() * (100.0 / mass);
+    crowd.bodies.push_back(body);
+  }
+  crowd.bodies[1].velocity = {0, 0, -0.05};
+  crowd.manifolds.push_back({1, 0, Vec3::UnitZ(), {.restitution = 0.0, .friction = 2.0}, 0, 2});
+  crowd.points.resize(2);
+  const Vec3 along(0.1, 0, 0.05);
+  for (int i = 0; i < 2; ++i) {
+    CrowdPoint& point = crowd.points[std::size_t(i)];
+    point.arm_first = (i - 0.5) * along - 0.1 * Vec3::UnitZ();
+    point.arm_second = point.arm_first + 0.2 * Vec3::UnitZ();
+    point.gap = 1e-6 * i;
+  }
+  solve(crowd, find_simd(), 1, {.fall = Vec3(0, 0, -9.81 * kStep)});
+  const Vec3 sum = crowd.points[0].impulse + crowd.points[1].impulse;
+  EXPECT_NEAR(sum.z(), 0.05, 0.001);  // N s
+  for (const CrowdPoint& point : crowd.points)
+    EXPECT_LT(std::abs(point.impulse.x()), 0.4 * sum.z()) << point.impulse.transpose();
+}
+
 // What does not hang together with a weight is solved as without it.
 TEST(CrowdSolver, AWeightChangesNothingElsewhere) {
   SolverCrowd plain = make_crowd(40, 90, true);
