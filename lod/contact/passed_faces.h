@@ -19,7 +19,7 @@ struct PairWay {
 
 /// What becomes of a contact of two hulls across a face along which one passes the other: the contact with
 /// that face, where they lie over each other, none where they do not. Any other contact stays as it is.
-/// `axis` is then the axis along which they pass, where the next search is to begin.
+/// `axis`, the contact's, is then the one along which they pass, where the next search is to begin.
 std::optional<PairContact> pass_over(const PairBody& first, const PairBody& second, const PairWay& way,
                                      const PairContact& contact, HullGap& axis);
 
