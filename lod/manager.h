@@ -106,12 +106,13 @@ class Manager {
   /// `sides` are whole edge lengths: the longest 1e-4 … 1e6 m, none shorter than 2e-6 of it.
   GroundId add_static_box(const Vec3& sides, const Vec3& position, const Quat& orientation,
                           MaterialId material = 0);
-  /// Puts a box or mesh elsewhere (a mesh is made at the origin, unturned) and wakes what is near. `state` is
-  /// that at the beginning of the next step. With a velocity it carries what lies on it, on every rung:
-  /// within the step it moves on from `state`; after the step it is back there, also for queries, until it is
-  /// moved again. So a platform is moved before each step, and once without a velocity where it stops. Ground
-  /// that has a velocity and is never moved is a conveyor belt. Ground that is moved before each step without
-  /// a velocity pushes what it meets. A plane cannot be moved: remove it and add another.
+  /// Puts a box or mesh elsewhere (a mesh is made at the origin, unturned) and wakes what is near, unless it
+  /// stood still there before. `state` is that at the beginning of the next step. With a velocity it carries
+  /// what lies on it, on every rung: within the step it moves on from `state`; after the step it is back
+  /// there, also for queries, until it is moved again. So a platform is moved before each step, and once
+  /// without a velocity where it stops. Ground that has a velocity and is never moved is a conveyor belt.
+  /// Ground that is moved before each step without a velocity pushes what it meets. A plane cannot be moved:
+  /// remove it and add another.
   void move_ground(GroundId ground, const RigidState& state);
   void remove_ground(GroundId ground);  ///< wakes what lies on it
   bool valid(GroundId ground) const;
@@ -178,8 +179,8 @@ class Manager {
   void set_viewpoints(std::span<const Vec3> positions);
   void set_viewpoints(std::span<const Viewpoint> viewpoints);
   void set_viewpoints(std::initializer_list<Viewpoint> viewpoints);
-  /// m/s², any finite one, zero too; wakes every body. On a caller's world sets that world's;
-  /// dWorldSetGravity by the caller does the same from the next step on.
+  /// m/s², any finite one, zero too; wakes every body, if it is another than before. On a caller's world sets
+  /// that world's; dWorldSetGravity by the caller does the same from the next step on.
   void set_gravity(const Vec3& gravity);
   void set_full_substeps(int substeps);            ///< ≥ 1
   void set_events(const EventSettings& settings);  ///< from the next step on

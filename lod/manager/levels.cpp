@@ -110,8 +110,9 @@ void Levels::put_to_sleep(std::uint32_t body) {
 }
 
 void Levels::set_gravity(const Vec3& gravity) {
+  const bool is_new = gravity != statistical_settings.gravity;
   use_gravity(gravity);
-  wake_all();
+  if (is_new) wake_all();
 }
 
 void Levels::use_gravity(const Vec3& gravity) {

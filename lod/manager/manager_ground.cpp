@@ -64,11 +64,21 @@ GroundId Manager::add_static_box(const Vec3& sides, const Vec3& position, const 
   return id;
 }
 
+namespace {
+
+bool stands_so(const GroundPart& part, const RigidState& state) {
+  return !part.moves() && state.velocity.isZero(0.0) && state.angular_velocity.isZero(0.0) &&
+         part.pose.position == state.position && part.pose.orientation.coeffs() == state.orientation.coeffs();
+}
+
+}  // namespace
+
 void Manager::move_ground(GroundId id, const RigidState& state) {
   Levels& levels = impl_->levels;
   check_valid(levels.ground, id);
   if (levels.ground.is_plane(id)) throw_input_error("ground to be moved", "a plane", "a static box or mesh");
   const RigidState sound = checked(state);
+  if (stands_so(levels.ground.part(id), sound)) return;
   impl_->changes.keep_moved();
   const Eigen::AlignedBox3d before = levels.ground.bounds(id);
   levels.ground.move_part(id, {.position = sound.position,

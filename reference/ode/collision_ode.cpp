@@ -19,13 +19,18 @@ bool same_pair(const Candidate& a, const Candidate& b) {
 
 Pieces pieces_of(const Body& body) { return {body.pieces, state_of(body.body)}; }
 
+/// Whether a mesh holds a point of the world's.
+bool is_inside(const Body& mesh, const Vec3& point) {
+  const RigidState state = state_of(mesh.body);
+  const Vec3 own = state.orientation.conjugate() * (point - state.position);
+  return own.norm() < mesh.reach && winding_number(mesh.shape->mesh, own) > 0;
+}
+
 /// Whether two meshes whose surfaces do not cross are one inside the other.
 bool is_inside_other(const Body& first, const Body& second) {
   const auto& [inner, outer] = first.reach < second.reach ? std::tie(first, second) : std::tie(second, first);
-  const RigidState within = state_of(inner.body), around = state_of(outer.body);
-  const Vec3 point = around.orientation.conjugate() *
-                     (within.position + within.orientation * inner.shape->mesh.vertices[0] - around.position);
-  return point.norm() < outer.reach && winding_number(outer.shape->mesh, point) > 0;
+  const RigidState within = state_of(inner.body);
+  return is_inside(outer, within.position + within.orientation * inner.shape->mesh.vertices[0]);
 }
 
 /// A contact deeper than the hulls' overlap has a false direction. Where there are no others, the hulls' way
@@ -190,6 +195,7 @@ void Collision::find_pair_points(const Body& body, const Body* other, std::span<
         trimeshes_.prepare_for_convexes(*body.shape, dGeomTriMeshGetData(part.first));
       narrow_phase_.find(part.first, part.second, size, points_);
     }
+  if (exact && other && points_.empty()) find_swallowed_ball(body, *other);
   if (exact) points_.resize(std::size_t(drop_inner_contacts(points_, size)));
   drop_beyond(reduce_contacts(points_, settings_.max_contacts_per_pair, size));
 }
@@ -211,6 +217,19 @@ void Collision::find_filtered_points(const Body& body, const Body& other, const 
   }
   limit_depths(points_, *overlap);
   drop_opposing(points_, size);
+}
+
+/// A ball meets no face of a mesh behind which its centre is.
+void Collision::find_swallowed_ball(const Body& body, const Body& other) {
+  const auto& [ball, mesh] = is_mesh(other) ? std::tie(body, other) : std::tie(other, body);
+  if (!ball.shape->sphere_radius || !is_mesh(mesh)) return;
+  constexpr double kNearly = 0.9;  // of the radius: less deep is no centre
+  const RigidState first = state_of(body.body), second = state_of(other.body);
+  const auto overlap = find_hull_overlap(*body.shape, first, *other.shape, second);
+  const Vec3 center = to_vec3(dBodyGetPosition(ball.body));
+  if (!overlap || overlap->depth < kNearly * *ball.shape->sphere_radius || !is_inside(mesh, center)) return;
+  ++swallowed_;
+  points_.push_back({center, overlap->direction, overlap->depth});
 }
 
 void Collision::drop_beyond(int kept) {

@@ -79,6 +79,7 @@ class Collision {
   void note_joined(Bodies& bodies, const Body& body, const ContactGraph& contacts);
   void note_woken(Bodies& bodies, const Body* body);
   void find_pair_points(const Body& body, const Body* other, std::span<const Candidate> parts);
+  void find_swallowed_ball(const Body& body, const Body& other);
   void find_filtered_points(const Body& body, const Body& other, const Candidate& pair, double size);
   Pieces pieces_of_other(const Candidate& candidate, const Body* other);
   void drop_beyond(int kept);

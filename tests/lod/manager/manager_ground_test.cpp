@@ -288,5 +288,22 @@ TEST(ManagerGround, AFloorOfManyKilometresHoldsOnEachRung) {
   }
 }
 
+// As games put it, in each frame.
+TEST(ManagerGround, PutWhereItStandsWakesNobody) {
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::full}) {
+    Manager manager(unmeasured());
+    const GroundId table = manager.add_static_box({2, 2, 1}, {0, 0, -0.5}, Quat::Identity());
+    const BodyId body = add(manager, box_shape({0.2, 0.2, 0.2}), at({0, 0, 0.1}), level);
+    for (int i = 0; i < 120; ++i) {
+      manager.move_ground(table, at({0, 0, -0.5}));
+      manager.step(kFrame);
+    }
+    EXPECT_TRUE(manager.asleep(body));
+    manager.move_ground(table, at({0, 0, -1}));
+    run(manager, 0.2);
+    EXPECT_FALSE(manager.asleep(body));
+  }
+}
+
 }  // namespace
 }  // namespace lodestone

@@ -37,6 +37,19 @@ TEST(ManagerGravity, WakesEverybody) {
   }
 }
 
+// As games set it, in each frame.
+TEST(ManagerGravity, TheSameAgainWakesNobody) {
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::full}) {
+    Manager manager = on_floor();
+    const BodyId body = add(manager, box_shape({0.2, 0.2, 0.2}), at({0, 0, 0.1}), level);
+    for (int i = 0; i < 120; ++i) {
+      manager.set_gravity(manager.gravity());
+      manager.step(kFrame);
+    }
+    EXPECT_TRUE(manager.asleep(body));
+  }
+}
+
 TEST(ManagerGravity, WhatIsNotFiniteIsRefused) {
   Manager manager{unmeasured()};
   const Vec3 before = manager.gravity();

@@ -156,6 +156,28 @@ TEST(OdePairs, ABodyWhollyInsideAnotherIsNoticedAndPushedOut) {
                 0.05);  // by contacts that do not oppose each other, each at the correcting velocity
 }
 
+// As where it was put there: ODE's ball meets no face that its centre is behind.
+TEST(OdePairs, ABallWhoseCenterIsInABodyIsNoticedAndPushedOut) {
+  const MaterialTable materials = material(0.0, 0.3);
+  const auto cube = box_shape({0.3, 0.3, 0.3}), ball = sphere_shape(0.15);
+  for (const bool ball_first : {false, true}) {
+    OdeWorld world({.gravity = Vec3::Zero(), .max_correcting_velocity = 1.0}, materials);
+    const auto add = [&](bool is_ball) {
+      return world.add_body({.shape = is_ball ? ball : cube,
+                             .mass = is_ball ? 1.0 : 100.0,
+                             .state = at(is_ball ? Vec3(0.01, 0.02, 0.1) : Vec3::Zero())});
+    };
+    const OdeBodyId one = add(ball_first), other = add(!ball_first);
+    world.step(1.0 / 240);
+    EXPECT_EQ(world.counters().swallowed, 1);
+    for (int i = 0; i < 240; ++i) world.step(1.0 / 240);
+    const Vec3 between =
+        world.state(ball_first ? one : other).position - world.state(ball_first ? other : one).position;
+    EXPECT_GT(between.z(), 0.298);
+    EXPECT_LT(between.head<2>().norm(), 0.1);
+  }
+}
+
 TEST(OdePairs, SupportRemovedWakesWhatItHeld) {
   const MaterialTable materials = material(0.0, 0.5);
   Stack stack = make_stack(materials, make_box(Vec3::Constant(0.5)), 0.5, 3, {.auto_disable = true});
