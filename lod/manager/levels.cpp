@@ -110,9 +110,10 @@ void Levels::put_to_sleep(std::uint32_t body) {
 }
 
 void Levels::set_gravity(const Vec3& gravity) {
-  const bool is_new = gravity != statistical_settings.gravity;
+  if (gravity == statistical_settings.gravity)
+    return full.set_gravity(gravity);  // a caller's world's may differ
   use_gravity(gravity);
-  if (is_new) wake_all();
+  wake_all();
 }
 
 void Levels::use_gravity(const Vec3& gravity) {
