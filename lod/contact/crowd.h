@@ -39,8 +39,9 @@ struct CrowdTouch {
   double time = 0.0;  ///< s
   /// s: a body that has been still for so long falls asleep if it stands firmly; larger ones later (RestLaw).
   float still_time = 1e30f;
-  int sweeps = 10;       ///< of the solver, at most
-  double parting = 1.0;  ///< factor of push_out_overlap, by which overlaps are undone
+  double still_speed = 0.0;  ///< m/s: what is slower moves no full body on (RestLaw)
+  int sweeps = 10;           ///< of the solver, at most
+  double parting = 1.0;      ///< factor of push_out_overlap, by which overlaps are undone
 };
 
 /// Solves a crowd. Its arrays are kept between steps, so that a warm step allocates nothing.

@@ -100,6 +100,17 @@ bool Crowd::is_backed(std::size_t neighbor, const Vec3& impulse, const CrowdTouc
   });
 }
 
+namespace {
+
+// Not so who was only just woken, or jostled.
+bool moves_on(const ContactScene& scene, Participant p, double still_speed) {
+  if (!p.is_statistical() || scene.asleep(p) || scene.body(p).quiet_time > 0.0f) return false;
+  return scene.properties(p).kinematic || scene.body(p).carried || scene.is_forced(p) ||
+         scene.velocity(p).norm() > still_speed;
+}
+
+}  // namespace
+
 void Crowd::give_to_full(const ContactScene& scene, const CrowdTouch& touch) {
   if (scene.neighbors.empty()) return;
   for (const CrowdManifold& m : std::span(manifolds_).first(pair_manifolds_))
@@ -112,9 +123,7 @@ void Crowd::give_to_full(const ContactScene& scene, const CrowdTouch& touch) {
                          : is_backed(to.index(), impulse, touch) ? full.backed_hit
                                                                  : full.hit;
         if (hits) full.fastest_hit = std::max(full.fastest_hit, double(point.blow));
-        const bool moves =
-            from.is_statistical() && !scene.asleep(from) && scene.body(from).quiet_time == 0.0f;
-        scene.neighbor(to).carried |= moves && !impulse.isZero(0.0);
+        full.moved |= !impulse.isZero(0.0) && moves_on(scene, from, touch.still_speed);
         share.linear += impulse;
         share.angular += arm.cross(impulse);
       };

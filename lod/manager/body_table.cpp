@@ -56,7 +56,6 @@ void BodyTable::remove(BodyId id) {
   --counts_[std::size_t(levels_[index].choice)];
   give_back(records_[index].shape);
   drop_force(index);
-  forget_rare(index);
   properties_.forget(index);
   records_[index] = {.generation = id.generation};
   levels_[index] = {};
@@ -70,8 +69,8 @@ void BodyTable::reuse_indices() {
 
 void BodyTable::archive(StateArchive& a) {
   std::vector<std::uint32_t> pushed = this->pushed();
-  a(records_, levels_, free_, removed_, shapes_, free_shapes_, newcomers_, forces_, pushed, rare_,
-    properties_, births_, counts_, greatest_importance_);
+  a(records_, levels_, free_, removed_, shapes_, free_shapes_, newcomers_, forces_, pushed, properties_,
+    births_, counts_, greatest_importance_);
   if (!a.reading()) return;
   pushed_ = std::move(pushed);
   for (std::size_t i = 0; i < pushed_.size(); ++i) forces_[pushed_[i]].place = i;

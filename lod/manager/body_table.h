@@ -130,23 +130,6 @@ class BodyTable {
   Forces forces() const;
   void hold(const Forces& forces);
 
-  /// What few bodies need at a time.
-  struct Rare {
-    double still_s = 0.0;  // how long it has been still at the full level, held up by statistical bodies
-    int frames_to_retry = 0,
-        retry_after = 0;  // of a promotion that was put off: left to wait, and the whole wait
-  };
-  Rare& rare(std::uint32_t index) { return rare_[index]; }
-  void forget_rare(std::uint32_t index) { rare_.erase(index); }
-  void forget_retries(std::uint32_t index) {
-    if (const auto rare = rare_.find(index); rare != rare_.end())
-      rare->second.frames_to_retry = rare->second.retry_after = 0;
-  }
-  /// It is not still.
-  void stir(std::uint32_t index) {
-    if (const auto rare = rare_.find(index); rare != rare_.end()) rare->second.still_s = 0.0;
-  }
-
   void archive(StateArchive& a);
 
   int size() const { return int(records_.size() - free_.size() - removed_.size()); }
@@ -178,7 +161,6 @@ class BodyTable {
   static constexpr std::uint32_t kDropped = ~std::uint32_t(0);
   std::unordered_map<std::uint32_t, Held> forces_;
   std::vector<std::uint32_t> pushed_;  // bodies with a force, and kDropped where one was dropped
-  std::unordered_map<std::uint32_t, Rare> rare_;
   OwnProperties properties_;
   std::uint64_t births_ = 0;
   std::array<int, 5> counts_{};  // of each choice

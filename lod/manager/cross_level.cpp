@@ -10,7 +10,6 @@
 #include "lod/manager/joint_contacts.h"
 #include "reference/ode/body_joints.h"
 #include "reference/ode/callers_bodies.h"
-#include "reference/rocking.h"
 
 namespace lodestone {
 namespace {
@@ -199,22 +198,6 @@ void gather_contacts(const Levels& levels, Neighborhood& neighborhood, double dt
   reckon_contacts_of_newcomers(levels, neighborhood);
 }
 
-// ODE lets no body sleep that none of its own contacts or joints holds up: by the same measure, one that
-// statistical bodies hold up sleeps here. Jointed ones sleep by ODE's law, all that hang together at once.
-bool falls_asleep(BodyTable& bodies, const FullNeighbor& neighbor, const SleepThresholds& thresholds,
-                  double gravity, double dt) {
-  const double still_speed = falling_speed_share(gravity) * thresholds.speed,                  // m/s
-      still_time = 5.0 * thresholds.time * rocking_slowness(neighbor.shape->radius, gravity);  // s, as alone
-  if (!bodies.properties(neighbor.owner).allow_sleep) return false;
-  const double turning = neighbor.state.angular_velocity.norm() * neighbor.shape->radius;
-  const bool still = !neighbor.push.is_zero() && !neighbor.carried &&
-                     neighbor.state.velocity.norm() < still_speed && turning < still_speed;
-  if (!still) return bodies.stir(neighbor.owner), false;
-  double& still_s = bodies.rare(neighbor.owner).still_s;
-  still_s += dt;
-  return still_s >= still_time;
-}
-
 void put_to_sleep(OdeWorld& world, OdeBodyId body, const FullNeighbor& neighbor, double dt) {
   RigidState state = neighbor.state;
   state.velocity = state.angular_velocity = Vec3::Zero();
@@ -226,8 +209,9 @@ void put_to_sleep(OdeWorld& world, OdeBodyId body, const FullNeighbor& neighbor,
 void hand_over(Levels& levels, OdeBodyId body, const FullNeighbor& neighbor, double dt, int substeps) {
   if (neighbor.asleep) return;  // else, where it was asleep, a hit woke it
   OdeWorld& world = *levels.full.world();
-  if (world.asleep(body) || neighbor.carried) world.set_asleep(body, false);  // ODE's clock begins anew
-  if (neighbor.carried) world.keep_awake(body);
+  const bool stays_awake = neighbor.carried || neighbor.moved;
+  if (world.asleep(body) || stays_awake) world.set_asleep(body, false);  // ODE's clock begins anew
+  if (stays_awake) world.keep_awake(body);
   world.hold(body, neighbor.push.linear / dt, neighbor.push.angular / dt);
   const BodyProperties& own = levels.bodies.properties(neighbor.owner);
   if (own.kinematic || (!neighbor.is_touched() && neighbor.shift.isZero(0.0))) return;
@@ -260,17 +244,15 @@ void gather(const Levels& levels, Neighborhood& neighborhood, double dt) {
       }
 }
 
-void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt, int substeps) {
+void hand_over(Levels& levels, const Neighborhood& neighborhood, const std::vector<bool>& falls_asleep,
+               double dt, int substeps) {
   const std::size_t own = levels.full.members().size();
   levels.callers.bodies.hand_over(std::span(neighborhood.bodies).subspan(own),
                                   levels.statistical_settings.gravity, dt, substeps);
   for (std::size_t i = 0; i < own; ++i) {
     const auto [owner, id] = levels.full.members()[i];
     const FullNeighbor& neighbor = neighborhood.bodies[i];
-    const bool sleeps = falls_asleep(levels.bodies, neighbor, levels.statistical_settings.sleep,
-                                     levels.statistical_settings.gravity.norm(), dt) &&
-                        levels.statistical_settings.sleeping && !has_joints(neighborhood.ode_bodies[i]);
-    if (sleeps)
+    if (falls_asleep[i])
       put_to_sleep(*levels.full.world(), id, neighbor, dt);
     else
       hand_over(levels, id, neighbor, dt, substeps);

@@ -28,7 +28,9 @@ struct Neighborhood {
 /// For a step of `dt` seconds. To be called while the bodies' forces are still held for them.
 void gather(const Levels& levels, Neighborhood& neighborhood, double dt);
 
-/// Gives each full body what came back, for a step of `dt` seconds that ODE takes in `substeps`.
-void hand_over(Levels& levels, const Neighborhood& neighborhood, double dt, int substeps);
+/// Gives each full body what came back, for a step of `dt` seconds that ODE takes in `substeps`, and lays
+/// those still that are to fall asleep (of the full level's members).
+void hand_over(Levels& levels, const Neighborhood& neighborhood, const std::vector<bool>& falls_asleep,
+               double dt, int substeps);
 
 }  // namespace lodestone

@@ -12,6 +12,7 @@
 #include "lod/manager/body_table.h"
 #include "lod/manager/eased_bodies.h"
 #include "lod/manager/near_full.h"
+#include "lod/manager/put_off_promotions.h"
 #include "lod/manager/signature_store.h"
 #include "lod/rungs/statistical_level.h"
 
@@ -43,6 +44,7 @@ struct Levels {
   StatisticalSettings statistical_settings;
   SignatureStore signatures;
   EasedBodies eased;  ///< at the full level
+  PutOffPromotions put_off;
   /// What the statistical rungs meet of a caller's own space.
   struct Callers {
     CallersGround ground;

@@ -38,7 +38,7 @@ void Manager::remove_body(BodyId body) {
   impl_->events.forget(body.index);
   impl_->queries.forget(body.index);
   impl_->levels.bodies.remove(body);
-  impl_->move_bodies.forget(body.index);
+  impl_->levels.put_off.forget(body.index);
   impl_->choose.forget(body.index);
   impl_->recorder.note(Call::remove_body, body);
 }

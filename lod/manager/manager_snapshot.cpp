@@ -28,7 +28,7 @@ struct Circumstances {
 
 struct Header {
   std::array<char, 8> magic = {'L', 'O', 'D', 'E', 'S', 'N', 'A', 'P'};
-  std::uint32_t format = 22, version = LODESTONE_VERSION;
+  std::uint32_t format = 23, version = LODESTONE_VERSION;
   // Sizes of what goes as it lies in memory: a build with other ones is no reader.
   std::array<std::uint16_t, 8> layout = {sizeof(void*),           sizeof(BodyRecord),   sizeof(BodyLevel),
                                          sizeof(StatisticalBody), sizeof(ClipPlayback), sizeof(StepReport),
@@ -170,7 +170,7 @@ void Manager::Impl::archive(StateArchive& a, std::span<const std::shared_ptr<con
   const SpaceMirror* const mirror = levels.full.world() ? levels.full.world()->callers_space() : nullptr;
   if (mirror) levels.callers.ground.archive(a, *mirror);
   levels.callers.bodies.archive(a, mirror);
-  a(levels.bodies, levels.now, levels.woken, levels.eased, report, costs, choose, move_bodies, step_levels,
+  a(levels.bodies, levels.now, levels.woken, levels.eased, levels.put_off, report, costs, choose, step_levels,
     changes, left_places, events);
   if (a.reading()) queries.forget_all(), levels.forget_places(), audit.forget_watched();
   bool has_statistical = levels.statistical != nullptr;

@@ -7,20 +7,9 @@
 #include "lod/timing/stage_timer.h"
 
 namespace lodestone {
-namespace {
-
-// A promotion that was put off is tried again after 8 frames, then 16, … 128: overlapping bodies must not use
-// up every frame's changes.
-constexpr int kFirstRetry = 8, kLastRetry = 128;
-
-}  // namespace
 
 void MoveBodies::count_down_retries() {
-  std::erase_if(put_off_, [this](std::uint32_t body) {
-    if (--levels_.bodies.rare(body).frames_to_retry > 0) return false;
-    levels_.bodies.level(body).put_off = false;
-    return true;
-  });
+  for (const std::uint32_t body : levels_.put_off.count_down()) levels_.bodies.level(body).put_off = false;
 }
 
 void MoveBodies::bring_back_woken(Groups::Return how, StepReport& report) {
@@ -112,7 +101,7 @@ void MoveBodies::promote(const RungChanges::Change& change, bool blocked, StepRe
     transfer(levels_, body, to);
     if (to != wanted) levels_.bodies.level(body).reason = Rule::overlap_put_off;
     if (to == Rung::full)
-      levels_.bodies.forget_retries(body);
+      levels_.put_off.forget(body);
     else
       choose_.note(body);
     ++report.promotions;
@@ -120,11 +109,9 @@ void MoveBodies::promote(const RungChanges::Change& change, bool blocked, StepRe
 }
 
 void MoveBodies::put_off(std::uint32_t body, StepReport& report) {
-  BodyTable::Rare& rare = levels_.bodies.rare(body);
-  rare.frames_to_retry = rare.retry_after = std::clamp(2 * rare.retry_after, kFirstRetry, kLastRetry);
+  levels_.put_off.put_off(body);
   levels_.bodies.level(body).put_off = true;
   levels_.bodies.level(body).reason = Rule::overlap_put_off;
-  put_off_.push_back(body);
   choose_.note(body);
   ++report.counters.promotions_put_off;
 }

@@ -3,13 +3,11 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "lod/manager/audit.h"
 #include "lod/manager/choose.h"
 #include "lod/manager/levels.h"
 #include "lod/step_report.h"
-#include "reference/state_archive.h"
 
 namespace lodestone {
 
@@ -28,8 +26,6 @@ class MoveBodies {
   /// Gives bodies at `support` their signature that has come: they stay as they are, and play clips from now
   /// on. Before the bodies are chosen.
   void supply_signatures();
-  void archive(StateArchive& a) { a(put_off_); }
-  void forget(std::uint32_t body) { std::erase(put_off_, body); }
 
  private:
   using Run = std::span<const RungChanges::Change>;  // that changes together
@@ -42,7 +38,6 @@ class MoveBodies {
   Levels& levels_;
   Choose& choose_;
   Audit& audit_;
-  std::vector<std::uint32_t> put_off_;  // waiting to be tried again
 };
 
 }  // namespace lodestone

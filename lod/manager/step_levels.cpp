@@ -19,19 +19,22 @@ void StepLevels::step_statistical(double dt, WorldStepBy by, StepReport& report)
     if (levels_.statistical) levels_.statistical->forget_contacts();
     neighborhood_.bodies.clear();
     neighborhood_.ode_bodies.clear();
+    held_bodies_ = {};
     levels_.give_forces();
     return;
   }
   {
     const StageTimer timer(report.times.cross_level_ms);
     gather(levels_, neighborhood_, dt);
+    held_bodies_.note_woken(neighborhood_);
     driven_bodies_.mark(neighborhood_, levels_.statistical_settings.gravity, dt);
     joint_forces_.add_to(neighborhood_.bodies);
     levels_.give_forces();
   }
   levels_.statistical->step(dt, neighborhood_.bodies, report, neighborhood_.contacts);
   const StageTimer timer(report.times.cross_level_ms);
-  hand_over(levels_, neighborhood_, dt, by == WorldStepBy::caller ? 1 : levels_.full.substeps_of(dt));
+  hand_over(levels_, neighborhood_, held_bodies_.find_still(levels_, neighborhood_, dt), dt,
+            by == WorldStepBy::caller ? 1 : levels_.full.substeps_of(dt));
 }
 
 void StepLevels::step_full(double dt, StepReport& report) {

@@ -4,6 +4,7 @@
 
 #include "lod/manager/cross_level.h"
 #include "lod/manager/driven_bodies.h"
+#include "lod/manager/held_bodies.h"
 #include "lod/manager/joint_forces.h"
 #include "lod/manager/levels.h"
 #include "lod/step_report.h"
@@ -25,13 +26,14 @@ class StepLevels {
   void end_callers_step(Counters& counters);
   /// Notes which full bodies touch another, on whatever rung; after both stages.
   void note_touching();
-  void archive(StateArchive& a) { a(neighborhood_.seen, joint_forces_, driven_bodies_); }
+  void archive(StateArchive& a) { a(neighborhood_.seen, joint_forces_, driven_bodies_, held_bodies_); }
 
  private:
   Levels& levels_;
   Neighborhood neighborhood_;
   JointForces joint_forces_;
   DrivenBodies driven_bodies_;
+  HeldBodies held_bodies_;
 };
 
 }  // namespace lodestone

@@ -107,7 +107,7 @@ void NearBodies::give_back(std::span<FullNeighbor> neighbors) const {
     neighbors[i].fastest_hit = full_[i].fastest_hit;
     neighbors[i].backing = full_[i].backing;
     neighbors[i].shift = full_[i].shift;
-    neighbors[i].carried = full_[i].carried;
+    neighbors[i].carried = full_[i].carried, neighbors[i].moved = full_[i].moved;
     neighbors[i].end = full_[i].state;
   }
 }
@@ -280,6 +280,7 @@ void NearBodies::move_crowded(const Step& step, Pace pace, int substep) {
                       .faces = solids_.faces(),
                       .time = time,
                       .still_time = still_time,
+                      .still_speed = rest_law_.full_sleep_speed(settings_.gravity.norm()),
                       .sweeps = sweeps_of(pace),
                       .parting = parting_of(pace)};
   };

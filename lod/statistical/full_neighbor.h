@@ -32,10 +32,9 @@ struct FullNeighbor {
   bool on_ground = false;      ///< a body of the caller's that is known to lie on ground
   bool driven = false;         ///< by a motor
   bool asleep = false;         ///< stands still like ground; out: false if a hit woke it
-  /// Out: carried by what nothing stops (CarriedBodies), or touched by a statistical body that moves. It must
-  /// not sleep.
-  bool carried = false;
-  Impulse hit;               ///< out: of impacts; given to the body before the full level's step
+  bool carried = false;        ///< out: by what nothing stops (CarriedBodies); must not sleep
+  bool moved = false;          ///< out: by a statistical body that goes on moving; must not sleep either
+  Impulse hit;                 ///< out: of impacts; given to the body before the full level's step
   Impulse push;              ///< out: of resting, sliding and rolling; given as a force spread over that step
   Impulse backed_hit;        ///< out: of impacts that press it against ground or full bodies behind it
   double fastest_hit = 0.0;  ///< out: m/s, approach speed of the fastest of all impacts

@@ -32,6 +32,8 @@ class RestLaw {
   /// m/s.
   double sleep_speed(double radius) const { return speed_ * std::sqrt(radius / kSleepSpeedRadius); }
   double wake_speed(double radius) const { return kWakeFactor * sleep_speed(radius); }
+  /// m/s, of a body of the full level, of any size. `gravity` in m/s².
+  double full_sleep_speed(double gravity) const { return falling_speed_share(gravity) * speed_; }
 
   /// J/kg: with more kinetic energy a body is not still. `gravity` in m/s².
   double still_energy(bool among_others, double radius, double gravity) const {

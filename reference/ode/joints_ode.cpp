@@ -30,10 +30,11 @@ Vec3 velocity_at(const ContactSide& side, const Vec3& point) {
   return to_vec3(dBodyGetLinearVel(side.body)) + to_vec3(dBodyGetAngularVel(side.body)).cross(arm);
 }
 
-/// m, body axes; zero of what is no body that can be pushed.
+/// m, body axes; zero of what is no body.
 Vec3 arm_on(const ContactSide& side, const Vec3& point) {
-  if (!side.body) return Vec3::Zero();
-  const RigidState state = state_of(side.body);
+  const dBodyID body = side.body ? side.body : side.kinematic;
+  if (!body) return Vec3::Zero();
+  const RigidState state = state_of(body);
   return state.orientation.conjugate() * (point - state.position);
 }
 
@@ -46,10 +47,11 @@ Vec3 tangential(const Vec3& v, const Vec3& normal) { return v - v.dot(normal) * 
 
 ContactSide side_of(dBodyID body, MaterialId material, OdeBodyId id, dGeomID callers_geom) {
   if (!body || !dBodyIsKinematic(body)) return {body, material, id, {}, false, callers_geom};
-  if (!is_moving(body)) return {nullptr, material, id, {}, false, callers_geom};
+  ContactSide side{nullptr, material, id, {}, is_moving(body), callers_geom};
+  side.kinematic = body;
   const RigidState state = state_of(body);
-  return {nullptr, material,    id, SurfaceMotion{state.position, state.velocity, state.angular_velocity},
-          true,    callers_geom};
+  if (side.moves) side.motion = {state.position, state.velocity, state.angular_velocity};
+  return side;
 }
 
 ContactJoints::ContactJoints(dWorldID world, const OdeSettings& settings, const MaterialTable& materials)

@@ -40,6 +40,7 @@ struct ContactSide {
   bool moves = false;  ///< does so, or was moved before this step
   dGeomID callers_geom = nullptr;
   OdeGroundId ground = {};
+  dBodyID kinematic = nullptr;     ///< the body, where it is one
   std::int32_t callers_slot = -1;  ///< in the mirror, of a geom of a dynamic body of the caller's
   /// m, by which what has no motion is put on in each step: so deep it may be in others for a moment, and
   /// pushes them as fast as it goes.

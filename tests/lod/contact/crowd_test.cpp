@@ -79,7 +79,7 @@ TEST(CrowdOfBoxes, AFullNeighbourIsGivenTheOppositeImpulse) {
 }
 
 // What moves and is near it, but gives it nothing, does not keep it awake.
-TEST(CrowdOfBoxes, OnlyWhoGivesAnImpulseCarriesAFullNeighbour) {
+TEST(CrowdOfBoxes, OnlyWhoGivesAnImpulseMovesAFullNeighbour) {
   for (const double speed : {0.2, -0.2}) {
     CrowdScene scene;
     const auto cube = box_shape({0.2, 0.2, 0.2});
@@ -87,7 +87,7 @@ TEST(CrowdOfBoxes, OnlyWhoGivesAnImpulseCarriesAFullNeighbour) {
                       b = scene.add_full(cube, 3.0, at({0.1, 0, 0}));
     scene.step(kCrowdStep, {{a, b}});
     ASSERT_EQ(scene.contacts.size(), 1U);
-    EXPECT_EQ(scene.neighbors[0].carried, speed > 0.0);
+    EXPECT_EQ(scene.neighbors[0].moved, speed > 0.0);
   }
 }
 
