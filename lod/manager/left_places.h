@@ -1,9 +1,10 @@
-// Places where bodies lay asleep until something woke them: once such a body has left, what slept beside it,
-// or on it, is woken, too, and again as it goes on: a body that is drawn away touches nothing that it could
-// wake by that.
+// Places where bodies lay asleep until something woke them, or lay awake when another fell asleep on them:
+// once such a body has left, what slept beside it, or on it, is woken, too, and again as it goes on: a body
+// that is drawn away, or creeps away, touches nothing that it could wake by that.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -24,7 +25,7 @@ class LeftPlaces {
               std::span<const BodyId> woke);
   /// At the beginning of a step: wakes who slept where somebody left in the last one.
   void wake(Levels& levels);
-  void archive(StateArchive& a) { a(slept_at_, awake_, left_); }
+  void archive(StateArchive& a) { a(slept_at_, fresh_, awake_, left_); }
 
  private:
   struct Awake {
@@ -37,10 +38,14 @@ class LeftPlaces {
     double radius;  // m
   };
   void watch(const Levels& levels, BodyId body, const Vec3& from);
-  void watch_full_ones_at(const Levels& levels, BodyId sleeper);
+  using MayBear = std::function<bool(std::uint32_t body, const Vec3& place, const Vec3& sleeper)>;
+  void watch_who_bears(const Levels& levels, std::span<const BodyId> slept);
+  void watch_who_bears(const Levels& levels, std::span<const BodyId> sleepers,
+                       std::span<const std::uint32_t> awake, const MayBear& may_bear);
 
   std::vector<Vec3> slept_at_;  // m, by the body's index
-  std::vector<Awake> awake_;    // who woke, or is full and bears a sleeper, and has not left altogether yet
+  std::vector<BodyId> fresh_;   // who fell asleep since it was last looked who bears them
+  std::vector<Awake> awake_;    // who woke, or bears a sleeper, and has not left altogether yet
   std::vector<Left> left_;      // in the last step
 };
 

@@ -95,19 +95,23 @@ void find_unsteady(const RestingFaces* stands, std::span<const lane::Row> faces,
   }
 }
 
-double find_rolling_lever(const Shape& shape) {
-  if (shape.sphere_radius) return 0.0;
+Mat3 find_rolling_levers(const Shape& shape) {
+  if (shape.sphere_radius) return Mat3::Zero();
   double sum = 0.0, solid_angles = 0.0;
+  Mat3 squares = Mat3::Zero();
   int vertex = 0;
   for (int row = 0; row <= kHullHeightSide; ++row)
     for (int column = 0; column <= kHullHeightSide; ++column) {
       const Vec3 direction = direction_at(column, row);
       vertex = find_support(shape.hull, direction, vertex);
       const double solid_angle = std::pow(direction.lpNorm<1>(), 3.0);  // of the map's equal squares
-      sum += solid_angle * direction.cross(shape.hull.vertices[std::size_t(vertex)]).norm();
+      const Vec3 lever = direction.cross(shape.hull.vertices[std::size_t(vertex)]);
+      sum += solid_angle * lever.norm();
+      squares += solid_angle * lever * lever.transpose();
       solid_angles += solid_angle;
     }
-  return kRollingShare * sum / solid_angles;
+  const double mean = kRollingShare * sum / solid_angles;
+  return 3.0 * mean * mean / squares.trace() * squares;
 }
 
 void sample_hull(const Shape& shape, const HullMaps& maps) {

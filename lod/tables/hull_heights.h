@@ -46,10 +46,11 @@ void find_unsteady(const RestingFaces* stands, std::span<const lane::Row> faces,
 /// Of the mean lever, for spheres among their like: with it piles come to rest when ODE's do.
 inline constexpr double kRollingShare = 0.2;
 
-/// m, of the rolling resistance of hulls among others: a sphere rolls on where a hull lies on a face or falls
-/// from edge to edge, and each of these holds it by its weight times what its lowest point lies beside the
-/// centre of mass. kRollingShare of the mean of that over all directions; 0 of a ball.
-double find_rolling_lever(const Shape& shape);
+/// m², body axes: of the rolling resistance of hulls among others, whose lever about an axis u has the square
+/// uᵀ L u. A sphere rolls on where a hull lies on a face or falls from edge to edge, and each of these holds
+/// it by its weight times what its lowest point lies beside the centre of mass: a log about its own axis
+/// hardly at all. In the mean kRollingShare of that over all directions; 0 of a ball.
+Mat3 find_rolling_levers(const Shape& shape);
 
 namespace lane {
 

@@ -48,10 +48,11 @@ void SphereKinds::take_friction(const Kinds& kinds, const MaterialTable& materia
 }
 
 void SphereKinds::resize(std::size_t size) {
-  for (auto* array : {&radius,        &ixx,        &iyy,         &izz, &ixy, &ixz, &iyz,
-                      &jxx,           &jyy,        &jzz,         &jxy, &jxz, &jyz, &softest,
-                      &gxx,           &gyy,        &gzz,         &gxy, &gxz, &gyz, &farthest_reach,
-                      &rolling_lever, &blend_time, &own_friction})
+  for (auto* array : {&radius,      &ixx, &iyy, &izz, &ixy, &ixz, &iyz,
+                      &jxx,         &jyy, &jzz, &jxy, &jxz, &jyz, &softest,
+                      &gxx,         &gyy, &gzz, &gxy, &gxz, &gyz, &farthest_reach,
+                      &rxx,         &ryy, &rzz, &rxy, &rxz, &ryz, &blend_time,
+                      &own_friction})
     array->resize(size, 1.0f);
   tips.resize(size, 0.0f), tipping_work.resize(size), patch_reach.resize(size), thickness.resize(size);
   height.resize(size * (kHeightSamples + 1));
@@ -107,7 +108,9 @@ void SphereKinds::set(std::uint32_t k, const BodyKind& kind, double gravity) {
   tipping_ += tips[k] > 0.0f;
   farthest_reach[k] = std::ranges::max(map_of(pair_height));
   most_reach = std::max({most_reach, farthest_reach[k], radius[k]});
-  rolling_lever[k] = float(find_rolling_lever(shape));
+  const Mat3 levers = find_rolling_levers(shape);
+  rxx[k] = float(levers(0, 0)), ryy[k] = float(levers(1, 1)), rzz[k] = float(levers(2, 2));
+  rxy[k] = float(levers(0, 1)), rxz[k] = float(levers(0, 2)), ryz[k] = float(levers(1, 2));
   blend_time[k] = float(TablesSettings{}.blend_time * std::sqrt(shape.radius / std::max(1e-9, gravity)));
   find_unsteady(kind.faces.get(), map_of(pair_face), map_of(unsteady));
   set_poses(k, kind);

@@ -1,6 +1,7 @@
 // What bodies of a kind share, as floats in dense arrays for the loops over bodies.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "lod/statistical/kinds.h"
@@ -30,7 +31,7 @@ struct SphereKinds {
   std::vector<float> farthest_reach;                // m, of pair_height
   float most_reach = 0.0f;                          // m: no kind's was ever farther, nor its sphere's
   std::vector<float> own_friction;                  // coefficient, of two bodies of the kind, in this step
-  std::vector<float> rolling_lever;                 // m, of rolling resistance
+  std::vector<float> rxx, ryy, rzz, rxy, rxz, ryz;  // m², body axes: find_rolling_levers()
   std::vector<float> blend_time;                    // s, of the approach to a rest pose
   std::vector<std::int32_t> first_pose;             // of the kind's rest poses in the next ones
   std::vector<float> pose_height, pose_x, pose_y, pose_z;  // m; normal in body axes; at least one pose a kind
@@ -49,6 +50,8 @@ struct SphereKinds {
   /// Whether there are balls, which are spheres to each other and in truth.
   bool any_balls() const { return balls_ > 0; }
   bool is_ball(std::uint32_t kind) const { return is_ball_[kind] != 0; }
+  /// m, of rolling resistance about whatever axis.
+  float mean_rolling_lever(std::uint32_t k) const { return std::sqrt((rxx[k] + ryy[k] + rzz[k]) / 3.0f); }
   /// Whether there are kinds whose free rotation takes more than the loops' midpoint rule.
   bool any_slender() const { return slender_ > 0; }
 

@@ -16,6 +16,7 @@ constexpr float kCalming = 4.0f;                        // 1/s
 constexpr float kStopRate = 30.0f, kStopping = 0.005f;  // 1/s; J/kg over g R
 constexpr float kStruck = 0.08f;                        // J/kg over g R: .6 m/s at R = .2 m
 constexpr float kPressed = 0.01f;                       // of its weight: less is none
+constexpr float kRolls = 0.03f;                         // lever over R about an axis: with less it just rolls
 constexpr int kLying = 110;                             // ms in a row on others: no passing blow in the air
 
 template <bool OneKind>
@@ -32,13 +33,12 @@ struct EndLoop {
     float *qw = spheres.qw.data(), *qx = spheres.qx.data(), *qy = spheres.qy.data(), *qz = spheres.qz.data(),
           *twice_energy = spheres.twice_energy.data();
     const std::uint32_t* kind = spheres.kind.data();
-    const Tensors soft = inverse_inertias_of(kinds);
+    const Tensors soft = inverse_inertias_of(kinds), levers = rolling_levers_of(kinds);
     const Row *p = step.p.data(), *a = step.a.data(), *s = step.s.data(), *d = step.d.data();
     std::uint8_t* on_ground = step.on_ground.data();
     std::uint8_t *crowded_for = spheres.crowded_for.data(), *since_crowded = spheres.since_crowded.data();
     auto* motion = reinterpret_cast<std::uint8_t*>(spheres.motion.data());
-    const float *size = kinds.radius.data(), *lever = kinds.rolling_lever.data(),
-                *friction = kinds.own_friction.data();
+    const float *size = kinds.radius.data(), *friction = kinds.own_friction.data();
     const float rolling = c.hulls ? c.gravity * c.time : 0.0f;  // m/s over the lever
     const double calm = c.hulls ? 1.0 : double(most(0.0f, 1.0f - kCalming * c.time)),
                  stop = double(most(0.0f, 1.0f - kStopRate * c.time));
@@ -76,8 +76,13 @@ struct EndLoop {
       // What has just been struck is not near-still.
       const float leaves = 0.5f * float(solved_x * solved_x + solved_y * solved_y + solved_z * solved_z);
       const bool lies = touches & (crowded > kLying) & (published | (leaves < kStruck * c.gravity * size[k]));
-      // What rolls as it likes rests on the ground only where that holds it.
-      const bool rolls = slides & (lever[k] == 0.0f);
+      // What rolls as it likes rests on the ground only where that holds it. Without a turn: about any axis.
+      const F3 turned_to{float(spun_x) + s[i].x, float(spun_y) + s[i].y, float(spun_z) + s[i].z};
+      const float turning = most(length(turned_to), 1e-20f);
+      const F3 axis = (1.0f / turning) * turned(back(Turn{qw[i], {qx[i], qy[i], qz[i]}}), turned_to);
+      const float any = (1.0f - dot(axis, axis)) * (levers.xx[k] + levers.yy[k] + levers.zz[k]) / 3.0f;
+      const float lever = square_root(most(0.0f, dot(axis, times(levers, k, axis)) + any));
+      const bool rolls = slides & (lever <= kRolls * size[k]);
       const bool calms = lies & !rolls & (s[i].w < c.resting_energy * c.gravity * size[k]);
       const bool stops = lies & !rolls & (s[i].w < least_energy * size[k]);
       crowded_for[i] = std::uint8_t(choose(touches, choose(crowded > 255, 255, crowded), 0));
@@ -87,10 +92,8 @@ struct EndLoop {
       const double slid = 1.0 - double(slowed);
       const double stopping =
           select(-std::int64_t(stops), select(-std::int64_t(slid > stop), slid, stop), 1.0);
-      const F3 turned_to{float(spun_x) + s[i].x, float(spun_y) + s[i].y, float(spun_z) + s[i].z};
-      const float turning = most(length(turned_to), 1e-20f),
-                  pressing = choose(length(given) > kPressed * rolling, rolling, 0.0f),
-                  braked = most(0.0f, 1.0f - choose(touches, pressing * lever[k], 0.0f) / turning);
+      const float pressing = choose(length(given) > kPressed * rolling, rolling, 0.0f),
+                  braked = most(0.0f, 1.0f - choose(touches, pressing * lever, 0.0f) / turning);
       const double kept = double(braked) * select(-std::int64_t(calms), calm, 1.0);
       const double by_x = kept * (spun_x + double(s[i].x)), by_y = kept * (spun_y + double(s[i].y)),
                    by_z = kept * (spun_z + double(s[i].z));

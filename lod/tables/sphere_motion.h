@@ -115,6 +115,10 @@ inline lane::Tensors inverse_inertias_of(const SphereKinds& k) {
   return {k.ixx.data(), k.iyy.data(), k.izz.data(), k.ixy.data(), k.ixz.data(), k.iyz.data()};
 }
 
+inline lane::Tensors rolling_levers_of(const SphereKinds& k) {
+  return {k.rxx.data(), k.ryy.data(), k.rzz.data(), k.rxy.data(), k.rxz.data(), k.ryz.data()};
+}
+
 /// Angular velocities, radii, reaches, and velocities with gravity.
 void start_step(const Spheres& spheres, const SphereKinds& kinds, const StepConstants& constants, Simd simd,
                 std::int64_t begin, std::int64_t end, SphereStep& step, Spheres& out);

@@ -41,7 +41,7 @@ StatisticalBody TablesLevel::guest_body(const Guest& guest) const {
     body.borne = borne;
     if (constants_.hulls)
       body.rolling_resistance =
-          float(borne.norm() / kRollingShare) * kinds_.rolling_lever[spheres_.kind[std::size_t(i)]];
+          float(borne.norm() / kRollingShare) * kinds_.mean_rolling_lever(spheres_.kind[std::size_t(i)]);
   };
   if (i < spheres_.awake && step_.touches(i)) {
     const Vec3* steady = loads_.steady_on(i);

@@ -163,6 +163,28 @@ TEST(LeftPlaces, ATowerFallsWhereABodyOfTheCallersGoes) {
 }
 
 // Nothing else wakes: a crate that is moved by a hair, and the crates that stand by themselves.
+// One that is pushed on never sleeps, and is too slow to wake what fell asleep on it, which hung in the air
+// once it had gone.
+TEST(LeftPlaces, WhatSleepsOnOneThatCreepsAwayComesDown) {
+  constexpr double kSpeed = 0.1;  // m/s
+  for (const auto& [below, above] : {std::pair(LevelChoice::support, LevelChoice::support),
+                                     std::pair(LevelChoice::tables, LevelChoice::tables),
+                                     std::pair(LevelChoice::support, LevelChoice::tables),
+                                     std::pair(LevelChoice::tables, LevelChoice::support),
+                                     std::pair(LevelChoice::support, LevelChoice::full)}) {
+    Manager manager = on_floor(settings());
+    const BodyId creeps = add(manager, cube(), testing::at({0, 0, 0.5 * kSide}), below),
+                 sleeps = add(manager, cube(), testing::at({0, 0, 1.5 * kSide + 5e-4}), above);
+    for (int frame = 0; frame < 30 * 60; ++frame) {
+      const RigidState s = manager.state(creeps);
+      manager.add_impulse(creeps, manager.mass(creeps) * Vec3(-kSpeed - s.velocity.x(), 0, 0), s.position);
+      manager.step(kFrame);
+    }
+    EXPECT_LT(manager.state(creeps).position.x(), -kSide) << int(below) << " under " << int(above);
+    EXPECT_LT(manager.state(sleeps).position.z(), 0.6 * kSide) << int(below) << " under " << int(above);
+  }
+}
+
 TEST(LeftPlaces, WhoStandsFarOffSleepsOn) {
   Manager manager = on_floor(settings());
   const std::vector<BodyId> tower = sleeping_tower(manager, LevelChoice::support, 0.0);

@@ -7,6 +7,7 @@
 #include "reference/random.h"
 #include "tests/four_legged.h"
 #include "tests/lod/tables/hull_maps.h"
+#include "tests/prism.h"
 #include "tests/reference/ode/ode_fixture.h"
 
 namespace lodestone {
@@ -83,6 +84,12 @@ TEST(HullHeights, ConcaveShapesLetOthersNearer) {
   EXPECT_NEAR(size_of(make_shape("four-legged", testing::make_four_legged()), Vec3::UnitZ()), 0.84, 1e-6);
 }
 
+double lever_about(const Shape& shape, const Vec3& axis) {
+  return std::sqrt(axis.dot(find_rolling_levers(shape) * axis));
+}
+
+double mean_lever(const Shape& shape) { return std::sqrt(find_rolling_levers(shape).trace() / 3.0); }
+
 // A fifth of how far from the line through the centre of mass the lowest corner lies, on average: of a box
 // that corner is where the direction's signs point.
 TEST(RollingLever, IsAFifthOfTheLowestCornersMeanOffset) {
@@ -94,19 +101,36 @@ TEST(RollingLever, IsAFifthOfTheLowestCornersMeanOffset) {
       const Vec3 n = random.direction(), corner = 0.5 * sides.cwiseProduct(n.cwiseSign());
       sum += (corner - corner.dot(n) * n).norm() / kDirections;
     }
-    const double lever = find_rolling_lever(*testing::box_shape(sides));
+    const double lever = mean_lever(*testing::box_shape(sides));
     EXPECT_NEAR(lever, 0.2 * sum, 0.03 * lever);
   }
 }
 
-TEST(RollingLever, ABallHasNone) { EXPECT_EQ(find_rolling_lever(make_sphere_shape(0.3)), 0.0); }
+TEST(RollingLever, ABallHasNone) { EXPECT_EQ(mean_lever(make_sphere_shape(0.3)), 0.0); }
+
+TEST(RollingLever, OfACubeIsTheSameAboutAllAxes) {
+  const Shape cube = *testing::box_shape({0.2, 0.2, 0.2});
+  RandomStream random(1, 0, 0);
+  for (int i = 0; i < 20; ++i)
+    EXPECT_NEAR(lever_about(cube, random.direction()), mean_lever(cube), 0.03 * mean_lever(cube));
+}
+
+// Its faces are half a side's width beside the middle at most.
+TEST(RollingLever, OfALogIsSmallAboutItsAxis) {
+  for (const int sides : {12, 24, 40}) {
+    const Shape log = *testing::make_prism(sides, 0.2, 0.6);  // about z
+    const double over_end = lever_about(log, Vec3::UnitX());
+    EXPECT_LT(lever_about(log, Vec3::UnitZ()), 2.5 / sides * over_end) << sides;
+    EXPECT_NEAR(lever_about(log, Vec3::UnitY()), over_end, 0.03 * over_end) << sides;
+  }
+}
 
 // Of 320 faces less than of six, over R.
 TEST(RollingLever, IsLessTheRounderAShapeIs) {
   const Shape cube = *testing::box_shape({0.2, 0.2, 0.2});
   const Shape round = make_shape("round", make_sphere(0.1, 2));
-  EXPECT_LT(find_rolling_lever(round) / round.radius, 0.3 * find_rolling_lever(cube) / cube.radius);
-  EXPECT_GT(find_rolling_lever(round), 0.0);
+  EXPECT_LT(mean_lever(round) / round.radius, 0.3 * mean_lever(cube) / cube.radius);
+  EXPECT_GT(mean_lever(round), 0.0);
 }
 
 }  // namespace
