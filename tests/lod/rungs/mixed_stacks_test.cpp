@@ -44,6 +44,14 @@ void expect_stands(const Manager& manager, const std::vector<BodyId>& cubes, con
   }
 }
 
+/// A full box that nothing pushes.
+BodyId add_kinematic(Manager& manager, const Vec3& sides, const Vec3& position) {
+  return manager.add_body({.shape = box_shape(sides),
+                           .state = testing::at(position),
+                           .level = LevelChoice::full,
+                           .properties = {.kinematic = true}});
+}
+
 TEST(MixedStacks, Stand) {
   for (const std::string levels : {"fs", "ft", "sf", "tf", "fsfs", "sfsf", "ftft", "tftf", "sfff", "fsst"})
     for (const double restitution : {0.0, 0.4})
@@ -151,10 +159,7 @@ TEST(MixedStacks, WhatTouchesAWallAndLosesItsGroundFalls) {
 TEST(MixedStacks, FullOnesOnAStatisticalOneGoAlongWithASlowTruck) {
   for (const std::string levels : {"sff", "sfff"}) {
     Manager manager = on_floor();
-    const BodyId truck = manager.add_body({.shape = box_shape({3, 3, 0.2}),
-                                           .state = testing::at({0, 0, 0.3}),
-                                           .level = LevelChoice::full,
-                                           .properties = {.kinematic = true}});
+    const BodyId truck = add_kinematic(manager, {3, 3, 0.2}, {0, 0, 0.3});
     std::vector<BodyId> cubes;
     for (std::size_t i = 0; i < levels.size(); ++i)
       cubes.push_back(
@@ -260,14 +265,7 @@ TEST(MixedStacks, AFullOneOnAKinematicOneHoldsWhatIsPushedAgainstIt) {
   for (const bool platform_first : {false, true}) {
     Manager manager(unmeasured());
     manager.add_plane(Vec3::UnitZ(), -5.0);
-    BodyProperties kinematic;
-    kinematic.kinematic = true;
-    const auto add_platform = [&] {
-      manager.add_body({.shape = box_shape({3, 3, 0.2}),
-                        .state = testing::at({0, 0, -0.1}),
-                        .level = LevelChoice::full,
-                        .properties = kinematic});
-    };
+    const auto add_platform = [&] { add_kinematic(manager, {3, 3, 0.2}, {0, 0, -0.1}); };
     if (platform_first) add_platform();
     const BodyId full = manager.add_body({.shape = box_shape({0.3, 0.4, 0.3}),
                                           .state = testing::at({0, 0, 0.15}),
@@ -493,14 +491,7 @@ TEST(MixedHeap, AFullClusterInItComesToRest) {
 TEST(MixedStacks, WhatLiesOnAWokenOneOnAKinematicBodyLiesStill) {
   for (const bool floor_first : {false, true}) {
     Manager manager(unmeasured());
-    BodyProperties kinematic;
-    kinematic.kinematic = true;
-    const auto add_floor = [&] {
-      manager.add_body({.shape = box_shape({6, 6, 0.4}),
-                        .state = testing::at({0, 0, -0.2}),
-                        .level = LevelChoice::full,
-                        .properties = kinematic});
-    };
+    const auto add_floor = [&] { add_kinematic(manager, {6, 6, 0.4}, {0, 0, -0.2}); };
     if (floor_first) add_floor();
     const auto cube = box_shape({kStackedSide, kStackedSide, kStackedSide});
     const BodyId below = add(manager, cube, testing::at({0, 0, 0.5 * kStackedSide}), LevelChoice::full),
