@@ -208,7 +208,7 @@ TEST_F(Slope, ABallRollsDown) {
 }
 
 // Eight, side by side. At full they have gone 6.2 and 6.8 m by then (ODE; at `support` 5.4 and 6.1). Held by
-// what turns them end over end, none had gone 2 cm.
+// what turns them end over end, none had gone 6 cm.
 TEST_F(Slope, LogsThatTouchRollDown) {
   constexpr double kRadius = 0.2, kMass = 75.0;
   tilt(15.0);
