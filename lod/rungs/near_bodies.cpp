@@ -63,7 +63,7 @@ void NearBodies::step(double dt, SupportLevel& support, std::span<Guest> guests,
   }
   balls_.resize(step.scene.bodies.size());
   for (const std::int32_t index : near_.marked())
-    note_ball(step, Participant::statistical(std::size_t(index)));
+    note_ball(step, Participant::statistical(std::size_t(index)), 0.0);
   crowd_.begin_step(dt);
   for (const Pace pace : plan_.paces()) move_islands(step, pace);
   crowd_.end_step();
@@ -157,7 +157,7 @@ void NearBodies::find_touching(const Step& step, Pace pace, int substep) {
   if (!woken_.empty()) choose_movers(step.support, pace);  // at the end of the substep before
   woken_.insert(woken_.end(), driven_.begin(), driven_.end());
   driven_.clear();
-  if (!woken_.empty()) look_up_woken(step);
+  if (!woken_.empty()) look_up_woken(step, substep * time);
   if (substep > 0) pairs_.find_turning(step.scene, movers_);
   pairs_.find_contacts(step.scene, time, movers_, near_, pace);
   solids_.find(step.scene, movers_, substep * time, time, SolidSearch::all);

@@ -98,11 +98,11 @@ class NearBodies {
   void find_inside(const ContactScene& scene);
   bool are_to_part(const ContactScene& scene, const CrowdContact& contact) const;
   void keep_awake_on_moving_ground(const Step& step);
-  void look_up_woken(const Step& step);
+  void look_up_woken(const Step& step, double elapsed);
   void meet_woken(const Step& step, Pace pace, int substep);
 
   // Those that others drive.
-  void note_ball(const Step& step, Participant p);
+  void note_ball(const Step& step, Participant p, double elapsed);
   void find_driven(const Step& step, double left);
   void note_places(const Step& step);
   void stop_before_unseen_ground(const Step& step);

@@ -10,24 +10,29 @@ constexpr double kFarUnseen = 0.25;
 
 }  // namespace
 
-void NearBodies::note_ball(const Step& step, Participant p) {
+void NearBodies::note_ball(const Step& step, Participant p, double elapsed) {
   if (!p.is_statistical()) return;
   const StatisticalBody& body = step.scene.body(p);
   balls_[p.index()] =
-      step.search.ball_of(body.position, body.velocity, kinds_[body.kind].shape->radius, step.dt);
+      step.search.ball_of(body.position, body.velocity, kinds_[body.kind].shape->radius, elapsed);
 }
 
-// Finds those that others struck so hard that they may leave their balls in the `left` seconds of the step,
-// and pass bodies that were out of reach when near pairs were looked for.
+// Finds those that others struck so hard that they may leave their balls, or their long ways, in the `left`
+// seconds of the step, and pass bodies that were out of reach when near pairs were looked for.
 void NearBodies::find_driven(const Step& step, double left) {
   if (pairs_.contacts().empty() || left < 1e-6 * step.dt) return;
+  const Vec3 drift = step.dt * step.search.drift();  // m: how far ahead its frame is at the end
   for (const std::int32_t index : movers_) {
     const StatisticalBody& body = step.scene.bodies[std::size_t(index)];
     if (!body.crowded || body.motion == Motion::asleep) continue;
     const Shape& shape = *kinds_[body.kind].shape;
     const NearSearch::Ball& ball = balls_[std::size_t(index)];
-    const double most = double(ball.reach) - shape.radius + kFarUnseen * shape.inner_radius;
-    if ((body.position + left * body.velocity - ball.center).squaredNorm() > most * most)
+    const BallWay way = ball.way();
+    const double unseen = kFarUnseen * shape.inner_radius - shape.radius;
+    const bool bound = step.search.any_passed() && way.is_long();
+    const double most = unseen + (bound ? way.radius : double(ball.reach));
+    const Vec3 middle = bound ? Vec3(way.middle + way.half_way) : ball.center;
+    if ((body.position + left * body.velocity - drift - middle).squaredNorm() > most * most)
       driven_.push_back(Participant::statistical(std::size_t(index)));
   }
 }

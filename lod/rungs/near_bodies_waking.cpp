@@ -109,9 +109,9 @@ void NearBodies::keep_awake_on_moving_ground(const Step& step) {
 }
 
 // Finds whom the woken are near, with those that were driven out of their balls.
-void NearBodies::look_up_woken(const Step& step) {
-  pairs_.add(step.scene, step.search.find_woken(step.dt, step.support, full_, woken_));
-  for (const Participant p : woken_) note_ball(step, p);
+void NearBodies::look_up_woken(const Step& step, double elapsed) {
+  pairs_.add(step.scene, step.search.find_woken(elapsed, step.support, full_, woken_));
+  for (const Participant p : woken_) note_ball(step, p, elapsed);
 }
 
 // Finds the contacts of the woken; whom they touch may wake, too, and so on.
@@ -120,7 +120,7 @@ void NearBodies::meet_woken(const Step& step, Pace pace, int substep) {
   for (; !woken_.empty(); wake_touched(step, pace)) {
     known_movers_ = movers_;
     choose_movers(step.support, pace);
-    look_up_woken(step);
+    look_up_woken(step, substep * time);
     pairs_.find_more_contacts(step.scene, time, near_, pace);
     solids_.find_more(step.scene, movers_, known_movers_, substep * time, time);
   }

@@ -61,15 +61,21 @@ void NearSearch::sort_movers(std::span<const StatisticalBody> bodies) {
 }
 
 NearSearch::Ball NearSearch::ball_of(const Vec3& position, const Vec3& velocity, double radius,
-                                     double dt) const {
-  const Vec3 half_way = (0.5 * dt) * velocity;
-  return {position + half_way, float(kBall * radius + half_way.norm() + 0.5 * gravity_.norm() * dt * dt)};
+                                     double elapsed) const {
+  const Vec3 half_way = (0.5 * dt_) * (velocity - drift_);
+  return {position - elapsed * drift_ + half_way,
+          float(kBall * radius + half_way.norm() + 0.5 * gravity_.norm() * dt_ * dt_), half_way};
 }
 
 // A force acts on it within the step: to statistical bodies it is given before.
-NearSearch::Ball NearSearch::ball_of(const FullNeighbor& body, double dt) const {
-  return ball_of(body.state.position, body.state.velocity + (dt / body.mass) * body.force, body.shape->radius,
-                 dt);
+NearSearch::Ball NearSearch::ball_of(const FullNeighbor& body, double elapsed) const {
+  return ball_of(body.state.position, body.state.velocity + (dt_ / body.mass) * body.force,
+                 body.shape->radius, elapsed);
+}
+
+// As seen by what lies still: all of its way through the step.
+NearSearch::Ball NearSearch::at_rest(const Ball& ball) const {
+  return {ball.center + (0.5 * dt_) * drift_, ball.reach + float(0.5 * dt_ * drift_.norm())};
 }
 
 void NearSearch::add_ball(const Ball& ball) {
@@ -77,13 +83,16 @@ void NearSearch::add_ball(const Ball& ball) {
   reach_.push_back(ball.reach);
 }
 
-void NearSearch::add_hull_balls(double dt, std::span<const StatisticalBody> bodies,
-                                const SupportLevel& support, std::span<const FullNeighbor> neighbors) {
+void NearSearch::add_hull_balls(std::span<const StatisticalBody> bodies, const SupportLevel& support,
+                                std::span<const FullNeighbor> neighbors) {
+  half_way_.clear();
   for (const std::int32_t index : movers_) {
     const StatisticalBody& body = bodies[std::size_t(index)];
-    add_ball(ball_of(body.position, body.velocity, support.kind_of(body).shape->radius, dt));
+    const Ball ball = ball_of(body.position, body.velocity, support.kind_of(body).shape->radius, 0.0);
+    add_ball(ball);
+    half_way_.push_back(ball.half_way);
   }
-  for (const FullNeighbor& n : neighbors) add_ball(ball_of(n, dt));
+  for (const FullNeighbor& n : neighbors) add_ball(ball_of(n, 0.0));
 }
 
 void NearSearch::invite_cornered(const TablesLevel& tables, const SupportLevel& support) {
@@ -105,28 +114,30 @@ void NearSearch::clear() {
   any_near_ = false;  // no order
 }
 
-void NearSearch::fill(double dt, TablesLevel& tables, const SupportLevel& support,
+void NearSearch::fill(double dt, const Vec3& drift, TablesLevel& tables, const SupportLevel& support,
                       std::span<const FullNeighbor> neighbors) {
+  dt_ = dt, drift_ = drift;
   const Spheres& s = tables.spheres();
   spheres_ = std::size_t(s.awake);
   own_bodies_ = std::size_t(support.size());
-  apart_ = neighbors.empty() && stay_apart(dt, tables, support);
-  if (!neighbors.empty()) rooms_.give_up();
+  const bool may_have_rooms = neighbors.empty() && drift.isZero(0.0);
+  if (!may_have_rooms) rooms_.give_up();
+  apart_ = stay_apart(tables, support);
   take_movers(support);
   mixed_ = spheres_ > 0 && movers_.size() + neighbors.size() > 0;
   x_.clear(), y_.clear(), z_.clear(), reach_.clear();
   woken_.clear(), woken_x_.clear(), woken_y_.clear(), woken_z_.clear(), woken_reach_.clear();
   if (apart_) return;
-  const bool may_be_apart = neighbors.empty() && !any_near_ && pairs_.empty() && tables.size() <= kMostLone;
+  const bool may_be_apart = may_have_rooms && !any_near_ && pairs_.empty() && tables.size() <= kMostLone;
   if (mixed_ || spheres_ == 0) sort_movers(support.bodies());
-  if (may_be_apart && rooms_.are_due() && find_rooms(dt, tables, support)) {
+  if (may_be_apart && rooms_.are_due() && find_rooms(tables, support)) {
     apart_ = true;
   } else if (mixed_) {
-    fill_mixed(dt, tables, support, neighbors);
+    fill_mixed(tables, support, neighbors);
   } else if (spheres_ > 0) {
     fill_cells(s.x, s.y, s.z, tables.reach(), tables.free_rows());
   } else {
-    add_hull_balls(dt, support.bodies(), support, neighbors);
+    add_hull_balls(support.bodies(), support, neighbors);
     cells_.fill({x_, y_, z_, reach_});
   }
 }
@@ -141,7 +152,7 @@ void NearSearch::fill_cells(std::span<const double> x, std::span<const double> y
 
 // Spheres keep the balls that they have among themselves; those of hulls are drawn larger by as much as the
 // hull of any sphere stands out of it.
-void NearSearch::fill_mixed(double dt, const TablesLevel& tables, const SupportLevel& support,
+void NearSearch::fill_mixed(const TablesLevel& tables, const SupportLevel& support,
                             std::span<const FullNeighbor> neighbors) {
   const Spheres& s = tables.spheres();
   double standing_out = 0.0;  // m
@@ -151,19 +162,20 @@ void NearSearch::fill_mixed(double dt, const TablesLevel& tables, const SupportL
     to.assign(from.begin(), from.begin() + std::ptrdiff_t(spheres_));
   };
   copy(x_, s.x), copy(y_, s.y), copy(z_, s.z), copy(reach_, tables.reach());
-  add_hull_balls(dt, support.bodies(), support, neighbors);
+  add_hull_balls(support.bodies(), support, neighbors);
   drawn_reach_ = reach_;
   for (std::size_t i = spheres_; i < reach_.size(); ++i) drawn_reach_[i] += float(standing_out);
-  for (std::size_t i = 0; i < spheres_; ++i) reach_[i] = float(reach_of(tables, std::int64_t(i)));
+  for (std::size_t i = 0; i < spheres_; ++i)
+    reach_[i] = float(hull_reach(tables, std::int64_t(i), double(tables.reach()[i])));
   fill_cells(x_, y_, z_, drawn_reach_, {});
   note_order(spheres_);
 }
 
-// m: of a sphere awake, and of its hull.
-double NearSearch::reach_of(const TablesLevel& tables, std::int64_t place) const {
+// m: of the hull of a sphere awake that itself reaches so far.
+double NearSearch::hull_reach(const TablesLevel& tables, std::int64_t place, double reach) {
   const Spheres& s = tables.spheres();
   const auto i = std::size_t(place);
-  return double(tables.reach()[i]) + std::max(0.0, kBall * tables.radius(s.slot[i]) - double(s.radius[i]));
+  return reach + std::max(0.0, kBall * tables.radius(s.slot[i]) - double(s.radius[i]));
 }
 
 void NearSearch::note_order(std::size_t spheres) {
@@ -181,6 +193,19 @@ bool NearSearch::meet(std::uint32_t a, std::uint32_t b) const {
   const double dx = x_[a] - x_[b], dy = y_[a] - y_[b], dz = z_[a] - z_[b],
                limit = double(reach_[a]) + double(reach_[b]);
   return dx * dx + dy * dy + dz * dz < limit * limit;
+}
+
+// Of two hulls. (Whoever is driven off such a way looks around him
+// anew, NearBodies::find_driven.)
+bool NearSearch::pass(std::uint32_t a, std::uint32_t b) const {
+  const auto way_of = [&](std::uint32_t ball) {
+    return Ball{Vec3(x_[ball], y_[ball], z_[ball]), reach_[ball], half_way_[ball - spheres_]}.way();
+  };
+  const auto is_hull = [&](std::uint32_t ball) {
+    return ball >= spheres_ && ball < spheres_ + movers_.size();
+  };
+  if (!is_hull(a) || !is_hull(b)) return false;
+  return lodestone::pass(way_of(a), way_of(b));
 }
 
 Participant NearSearch::guest(std::int32_t slot) {
@@ -203,6 +228,7 @@ void NearSearch::add_pair(std::uint32_t first, std::uint32_t second, const Table
   const std::uint32_t low = std::min(first, second), high = std::max(first, second);
   if (low >= spheres_ + movers_.size()) return;  // two full bodies are the full level's matter
   if (mixed_ && !meet(low, high)) return;
+  if (pass(low, high)) return void(any_passed_ = true);
   const Participant a = participant(low, tables), b = participant(high, tables);
   pairs_.emplace_back(a, b);
 }
@@ -217,7 +243,7 @@ bool NearSearch::lets_meet(std::uint32_t first, std::uint32_t second) const {
 void NearSearch::find(TablesLevel& tables, SupportLevel& support, std::span<const FullNeighbor> neighbors) {
   pairs_.clear();
   forget_guests();
-  any_near_ = false;
+  any_near_ = any_passed_ = false;
   if (apart_) return tables.find_ground_contacts();
   const bool hulls =
       movers_.size() + neighbors.size() > 0 || !sleepers_.of(StatisticalModel::support).empty();

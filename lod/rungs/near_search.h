@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "lod/broad_phase/ball_way.h"
 #include "lod/broad_phase/cell_grid.h"
 #include "lod/rungs/known_sleepers.h"
 #include "lod/rungs/lone_rooms.h"
@@ -38,24 +39,30 @@ class NearSearch {
         cells_(settings.simd),
         woken_cells_(settings.simd) {}
 
-  /// Puts all that move into cells, for a step of `dt` seconds.
-  void fill(double dt, TablesLevel& tables, const SupportLevel& support,
+  /// Puts all that move into cells, for a step of `dt` s. `drift` (m/s): see find_drift(); the tables
+  /// level began its step with the same.
+  void fill(double dt, const Vec3& drift, TablesLevel& tables, const SupportLevel& support,
             std::span<const FullNeighbor> neighbors);
   /// The contacts of spheres, then the near pairs of all others; spheres among these are guests().
   void find(TablesLevel& tables, SupportLevel& support, std::span<const FullNeighbor> neighbors);
-  /// Of bodies that were woken, or left their balls, within a step of `dt` seconds: the near pairs that were
-  /// not known before. Guests stay who they are. Adds them to pairs().
-  std::span<const NearPair> find_woken(double dt, const SupportLevel& support,
+  /// Of bodies that were woken, or left their balls, `elapsed` s after the step's beginning: the near pairs
+  /// that were not known before. Guests stay who they are. Adds them to pairs().
+  std::span<const NearPair> find_woken(double elapsed, const SupportLevel& support,
                                        std::span<const FullNeighbor> neighbors,
                                        std::span<const Participant> woken);
   struct Ball {
-    Vec3 center;  // m
-    float reach;  // m
+    Vec3 center;                   // m
+    float reach;                   // m
+    Vec3 half_way = Vec3::Zero();  // m: of what is at the centre halfway
+    BallWay way() const { return {center, half_way, double(reach) - half_way.norm()}; }
   };
-  /// Within which a hull stays in `dt` seconds, if nothing strikes it: with whoever may come there it is
-  /// near.
-  Ball ball_of(const Vec3& position, const Vec3& velocity, double radius, double dt) const;
-  Ball ball_of(const FullNeighbor& body, double dt) const;
+  /// Within which a hull stays until the step ends, if nothing strikes it, in the frame that goes with the
+  /// drift from the step's beginning on: with whoever may come there it is near. How the hull is `elapsed` s
+  /// after that.
+  Ball ball_of(const Vec3& position, const Vec3& velocity, double radius, double elapsed) const;
+  Ball ball_of(const FullNeighbor& body, double elapsed) const;
+  const Vec3& drift() const { return drift_; }     ///< m/s
+  bool any_passed() const { return any_passed_; }  ///< two on long ways that are not near each other for that
   void clear();
   void set_gravity(const Vec3& gravity) { gravity_ = gravity; }
   void set_threads(int threads) { threads_ = threads; }
@@ -96,25 +103,30 @@ class NearSearch {
     }
   };
   static void sort_nearly_sorted(std::vector<Placed>& placed);
-  void add_hull_balls(double dt, std::span<const StatisticalBody> bodies, const SupportLevel& support,
+  void add_hull_balls(std::span<const StatisticalBody> bodies, const SupportLevel& support,
                       std::span<const FullNeighbor> neighbors);
+  Ball at_rest(const Ball& ball) const;
+  Ball ball_at_rest(std::size_t ball) const {
+    return at_rest({Vec3(x_[ball], y_[ball], z_[ball]), reach_[ball]});
+  }
   void add_ball(const Ball& ball);
   void fill_cells(std::span<const double> x, std::span<const double> y, std::span<const double> z,
                   std::span<const float> reach, const CellGrid::Lent& lent);
-  void fill_mixed(double dt, const TablesLevel& tables, const SupportLevel& support,
+  void fill_mixed(const TablesLevel& tables, const SupportLevel& support,
                   std::span<const FullNeighbor> neighbors);
   void take_movers(const SupportLevel& support);
   void sort_movers(std::span<const StatisticalBody> bodies);
   void sort_by_place(std::span<const StatisticalBody> bodies, std::vector<std::int32_t>& indices) const;
-  double reach_of(const TablesLevel& tables, std::int64_t place) const;
-  bool stay_apart(double dt, const TablesLevel& tables, const SupportLevel& support);
-  bool find_rooms(double dt, const TablesLevel& tables, const SupportLevel& support);
+  static double hull_reach(const TablesLevel& tables, std::int64_t place, double reach);
+  bool stay_apart(const TablesLevel& tables, const SupportLevel& support);
+  bool find_rooms(const TablesLevel& tables, const SupportLevel& support);
   bool is_near_sleepers(const Vec3& center, double reach, const TablesLevel& tables,
                         const SupportLevel& support) const;
   void note_order(std::size_t spheres);
   void find_ball_pairs();
   void add_pair(std::uint32_t first, std::uint32_t second, const TablesLevel& tables);
   bool meet(std::uint32_t first, std::uint32_t second) const;
+  bool pass(std::uint32_t first, std::uint32_t second) const;
   bool lets_meet(std::uint32_t first, std::uint32_t second) const;
   // Those from that one on that may not meet, by owner(participant), are none.
   template <class Owner>
@@ -125,7 +137,7 @@ class NearSearch {
         [&](const NearPair& pair) { return !lets_meet(owner(pair.first), owner(pair.second)); });
     pairs_.erase(kept, pairs_.end());
   }
-  void find_partners(const Vec3& center, double reach, const SupportLevel& support);
+  void find_partners(const Ball& ball, const SupportLevel& support);
   Participant participant(std::uint32_t ball, const TablesLevel& tables);
   Participant guest(std::int32_t slot);
   void forget_guests();
@@ -163,10 +175,14 @@ class NearSearch {
   JobRunner jobs_;
   CellGrid cells_;
 
-  // Balls: the awake spheres by place, then movers_, then full neighbours.
+  double dt_ = 0.0;            // s
+  Vec3 drift_ = Vec3::Zero();  // m/s
+
+  // Balls, in the frame of the drift: the awake spheres by place, then movers_, then full neighbours.
   std::vector<double> x_, y_, z_;   // m
   std::vector<float> reach_;        // m: how far its hull may reach in this step
   std::vector<float> drawn_reach_;  // m: of its ball in the cells
+  std::vector<Vec3> half_way_;      // m: of those in movers_
   std::size_t spheres_ = 0;
   std::vector<std::int32_t> movers_;  // indices of bodies that move, by place
   std::vector<Placed> placed_;        // the same
@@ -174,7 +190,8 @@ class NearSearch {
   LoneRooms rooms_;
   std::vector<std::int32_t> lone_spheres_;  // slots: of those with rooms that have not fallen asleep in them
   KnownSleepers known_sleepers_;
-  bool apart_ = false;             // in this step no mover is near anybody, by rooms_
+  bool apart_ = false;  // in this step no mover is near anybody, by rooms_
+  bool any_passed_ = false;
   bool any_near_ = false;          // movers whose balls meet, in the step before until find()
   bool mixed_ = false;             // spheres and others
   std::vector<BallPairs> others_;  // of parts of the cells: pairs that are not of two spheres

@@ -7,9 +7,9 @@
 namespace lodestone {
 
 // Finds a room for each mover for the next steps. Returns whether each has one to itself.
-bool NearSearch::find_rooms(double dt, const TablesLevel& tables, const SupportLevel& support) {
+bool NearSearch::find_rooms(const TablesLevel& tables, const SupportLevel& support) {
   constexpr double kSpare = 0.25;  // over R: for what an impact gives
-  const double time = rooms_.time(dt), fall = 0.5 * gravity_.norm() * time * time;
+  const double time = rooms_.time(dt_), fall = 0.5 * gravity_.norm() * time * time;
   const auto add_room = [&](StatisticalModel model, std::int32_t slot, const Vec3& center, double radius,
                             double reach, double speed) {
     const Ball room{center, float(reach + kSpare * radius + speed * time + fall)};
@@ -22,17 +22,21 @@ bool NearSearch::find_rooms(double dt, const TablesLevel& tables, const SupportL
   const Spheres& s = tables.spheres();
   for (std::int64_t i = 0; i < s.awake; ++i) {
     const std::int32_t slot = s.slot[std::size_t(i)];
-    add_room(StatisticalModel::tables, slot, s.position(i), tables.radius(slot), reach_of(tables, i),
-             s.velocity(i).norm());
+    add_room(StatisticalModel::tables, slot, s.position(i), tables.radius(slot),
+             hull_reach(tables, i, tables.still_reach(i)), s.velocity(i).norm());
   }
   for (const std::int32_t index : movers_) {
     const StatisticalBody& body = support.bodies()[std::size_t(index)];
     const double radius = support.kind_of(body).shape->radius;
     add_room(StatisticalModel::support, index, body.position, radius, kBall * radius, body.velocity.norm());
   }
-  cells_.fill({x_, y_, z_, reach_}, jobs_, std::min(threads_, kMostShares));
-  find_ball_pairs();
-  bool apart = ball_pairs_.size() == 0;
+  bool apart = true;
+  for (std::uint32_t i = 1; apart && i < x_.size(); ++i) apart = !meet(i - 1, i);  // mostly, if any meet
+  if (apart) {
+    cells_.fill({x_, y_, z_, reach_}, jobs_, std::min(threads_, kMostShares));
+    find_ball_pairs();
+    apart = ball_pairs_.size() == 0;
+  }
   for (std::size_t i = 0; apart && i < x_.size(); ++i)
     apart = !is_near_sleepers(Vec3(x_[i], y_[i], z_[i]), double(reach_[i]), tables, support);
   rooms_.laid = sleepers_.insertions();
@@ -44,7 +48,7 @@ bool NearSearch::find_rooms(double dt, const TablesLevel& tables, const SupportL
 
 // Whether the rooms still hold: all that moves has stayed within its room, what fell asleep since the last
 // step did so in its room, and nobody else was put to sleep.
-bool NearSearch::stay_apart(double dt, const TablesLevel& tables, const SupportLevel& support) {
+bool NearSearch::stay_apart(const TablesLevel& tables, const SupportLevel& support) {
   if (!rooms_.stand()) return false;
   const std::span<const StatisticalBody> bodies = support.bodies();
   const auto radius = [&](const StatisticalBody& body) { return support.kind_of(body).shape->radius; };
@@ -66,12 +70,13 @@ bool NearSearch::stay_apart(double dt, const TablesLevel& tables, const SupportL
   for (const std::int32_t index : support.awake()) {
     if (!hold) break;
     const StatisticalBody& body = bodies[std::size_t(index)];
-    const Ball ball = ball_of(body.position, body.velocity, radius(body), dt);
+    const Ball ball = ball_of(body.position, body.velocity, radius(body), 0.0);
     hold = rooms_.holds(StatisticalModel::support, index, ball.center, double(ball.reach));
   }
   const Spheres& s = tables.spheres();
   for (std::int64_t i = 0; hold && i < s.awake; ++i)
-    hold = rooms_.holds(StatisticalModel::tables, s.slot[std::size_t(i)], s.position(i), reach_of(tables, i));
+    hold = rooms_.holds(StatisticalModel::tables, s.slot[std::size_t(i)], s.position(i),
+                        hull_reach(tables, i, tables.still_reach(i)));
   if (!hold) rooms_.give_up();
   return hold;
 }

@@ -9,8 +9,9 @@ namespace lodestone {
 bool NearSearch::add_known_sleeper_pairs(std::size_t ball, const SupportLevel& support) {
   const std::span<const StatisticalBody> bodies = support.bodies();
   const std::int32_t mover = movers_[ball - spheres_];
-  const Vec3 center(x_[ball], y_[ball], z_[ball]);
-  const auto reach = double(reach_[ball]);
+  const Ball own = ball_at_rest(ball);
+  const Vec3& center = own.center;
+  const auto reach = double(own.reach);
   const auto known = known_sleepers_.near(sleepers_, mover, center, reach);
   if (!known) return false;
   sleepers_near_.clear();
@@ -41,8 +42,9 @@ void NearSearch::find_sleeper_pairs(const SupportLevel& support, std::span<const
     const bool full = i >= spheres_ + movers_.size();
     if (full && neighbors[i - spheres_ - movers_.size()].asleep) continue;
     if (!full && add_known_sleeper_pairs(i, support)) continue;
-    const Vec3 center(x_[i], y_[i], z_[i]);
-    const auto own_reach = double(reach_[i]);
+    const Ball own = ball_at_rest(i);
+    const Vec3& center = own.center;
+    const auto own_reach = double(own.reach);
     const auto note = [&](std::int32_t slot) { sleepers_near_.push_back(slot); };
     const Participant self = full ? Participant::full(i - spheres_ - movers_.size())
                                   : Participant::statistical(std::size_t(movers_[i - spheres_]));
@@ -75,9 +77,9 @@ void NearSearch::find_pairs_of_woken_spheres(const TablesLevel& tables) {
   std::ranges::sort(sleepers_near_);
   for (const std::int32_t slot : sleepers_near_)
     for (std::size_t ball = spheres_; ball < x_.size(); ++ball) {
-      const double limit = double(reach_[ball]) + kBall * tables.radius(slot);
-      if ((tables.position(slot) - Vec3(x_[ball], y_[ball], z_[ball])).squaredNorm() >= limit * limit)
-        continue;
+      const Ball hull_ball = ball_at_rest(ball);
+      const double limit = double(hull_ball.reach) + kBall * tables.radius(slot);
+      if ((tables.position(slot) - hull_ball.center).squaredNorm() >= limit * limit) continue;
       const Participant hull = participant(std::uint32_t(ball), tables);
       pairs_.emplace_back(guest(slot), hull);
     }
@@ -89,7 +91,7 @@ void NearSearch::find_sleeping_hulls_near_spheres(const SupportLevel& support, c
   const Spheres& s = tables.spheres();
   for (std::int64_t i = 0; i < s.awake; ++i) {
     sleepers_near_.clear();
-    each_sleeping_hull(s.position(i), reach_of(tables, i), support,
+    each_sleeping_hull(s.position(i), hull_reach(tables, i, tables.still_reach(i)), support,
                        [&](std::int32_t slot) { sleepers_near_.push_back(slot); });
     sort_by_place(support.bodies(), sleepers_near_);
     for (const std::int32_t slot : sleepers_near_)

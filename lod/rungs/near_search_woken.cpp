@@ -7,33 +7,34 @@
 namespace lodestone {
 
 // Who may meet one that was woken: who is awake, full, a guest or asleep, or was woken in this step, too.
-void NearSearch::find_partners(const Vec3& center, double reach, const SupportLevel& support) {
+void NearSearch::find_partners(const Ball& ball, const SupportLevel& support) {
   const std::span<const StatisticalBody> bodies = support.bodies();
   partners_.clear();
-  const auto meets = [&](const Vec3& other, double other_reach) {
-    return (other - center).squaredNorm() < (reach + other_reach) * (reach + other_reach);
+  const auto meets = [](const Ball& a, const Vec3& center, double reach) {
+    return (center - a.center).squaredNorm() < (double(a.reach) + reach) * (double(a.reach) + reach);
   };
   const bool any_hulls = x_.size() > spheres_;  // else the cells hold spheres alone, if they are there still
   if (any_hulls)
-    cells_.find_near(center, reach, [&](std::uint32_t ball) {
-      if (ball < spheres_ || !meets({x_[ball], y_[ball], z_[ball]}, double(reach_[ball]))) return;
-      const std::size_t mover = ball - spheres_;
+    cells_.find_near(ball.center, double(ball.reach), [&](std::uint32_t other) {
+      if (other < spheres_ || !meets(ball, {x_[other], y_[other], z_[other]}, double(reach_[other]))) return;
+      const std::size_t mover = other - spheres_;
       partners_.push_back(mover < movers_.size() ? Participant::statistical(std::size_t(movers_[mover]))
                                                  : Participant::full(mover - movers_.size()));
     });
-  woken_cells_.find_near(center, reach, [&](std::uint32_t other) {
-    if (meets({woken_x_[other], woken_y_[other], woken_z_[other]}, double(woken_reach_[other])))
+  woken_cells_.find_near(ball.center, double(ball.reach), [&](std::uint32_t other) {
+    if (meets(ball, {woken_x_[other], woken_y_[other], woken_z_[other]}, double(woken_reach_[other])))
       partners_.push_back(woken_[other]);
   });
+  const Ball still = at_rest(ball);
   const auto add_where_it_lies = [&](std::size_t other) {
-    if (meets(bodies[other].position, kBall * support.kind_of(bodies[other]).shape->radius))
+    if (meets(still, bodies[other].position, kBall * support.kind_of(bodies[other]).shape->radius))
       partners_.push_back(Participant::statistical(other));
   };
-  sleepers_.of(StatisticalModel::support).find_near(center, reach, add_where_it_lies);
+  sleepers_.of(StatisticalModel::support).find_near(still.center, double(still.reach), add_where_it_lies);
   for (std::size_t guest = own_bodies_; guest < bodies.size(); ++guest) add_where_it_lies(guest);
 }
 
-std::span<const NearPair> NearSearch::find_woken(double dt, const SupportLevel& support,
+std::span<const NearPair> NearSearch::find_woken(double elapsed, const SupportLevel& support,
                                                  std::span<const FullNeighbor> neighbors,
                                                  std::span<const Participant> woken) {
   const std::span<const StatisticalBody> bodies = support.bodies();
@@ -47,9 +48,9 @@ std::span<const NearPair> NearSearch::find_woken(double dt, const SupportLevel& 
   std::ranges::sort(newly_woken, {}, place_of);
   for (const Participant p : newly_woken) {
     const Ball ball = [&] {
-      if (p.is_full()) return ball_of(neighbors[p.index()], dt);
+      if (p.is_full()) return ball_of(neighbors[p.index()], elapsed);
       const StatisticalBody& body = bodies[p.index()];
-      return ball_of(body.position, body.velocity, support.kind_of(body).shape->radius, dt);
+      return ball_of(body.position, body.velocity, support.kind_of(body).shape->radius, elapsed);
     }();
     woken_x_.push_back(ball.center.x()), woken_y_.push_back(ball.center.y());
     woken_z_.push_back(ball.center.z()), woken_reach_.push_back(ball.reach);
@@ -72,7 +73,7 @@ std::span<const NearPair> NearSearch::find_woken(double dt, const SupportLevel& 
   };
   for (std::size_t i = first; i < woken_.size(); ++i) {
     const Participant self = woken_[i];
-    find_partners({woken_x_[i], woken_y_[i], woken_z_[i]}, double(woken_reach_[i]), support);
+    find_partners({Vec3(woken_x_[i], woken_y_[i], woken_z_[i]), woken_reach_[i]}, support);
     std::ranges::sort(partners_, {}, place_of);
     partners_.erase(std::unique(partners_.begin(), partners_.end()), partners_.end());
     for (const Participant other : partners_) {

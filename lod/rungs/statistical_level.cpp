@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lod/rungs/drift.h"
 #include "lod/rungs/near_bodies.h"
 #include "lod/rungs/near_search.h"
 #include "lod/timing/stage_timer.h"
@@ -59,7 +60,7 @@ struct StatisticalLevel::Impl {
   void let_fall(StatisticalPlace place);
   void wake_touching(StatisticalPlace place);
   bool any_pairs(std::span<const FullNeighbor> neighbors) const;
-  void find_near(double dt, std::span<const FullNeighbor> neighbors, StageTimes& times);
+  void find_near(double dt, const Vec3& drift, std::span<const FullNeighbor> neighbors, StageTimes& times);
   void forget_near();
   void move_hulls(double dt, std::span<FullNeighbor> neighbors, std::span<const FullContact> full_contacts,
                   StageTimes& times, ContactTally& tally);
@@ -138,11 +139,11 @@ std::optional<std::uint32_t> StatisticalLevel::remove(StatisticalPlace place, bo
 }
 
 // 3b
-void StatisticalLevel::Impl::find_near(double dt, std::span<const FullNeighbor> neighbors,
+void StatisticalLevel::Impl::find_near(double dt, const Vec3& drift, std::span<const FullNeighbor> neighbors,
                                        StageTimes& times) {
   {
     const StageTimer timer(times.broad_phase_ms);
-    search.fill(dt, tables, support, neighbors);
+    search.fill(dt, drift, tables, support, neighbors);
   }
   const StageTimer timer(times.pairs_ms);
   search.find(tables, support, neighbors);
@@ -178,16 +179,17 @@ void StatisticalLevel::step(double dt, std::span<FullNeighbor> neighbors, StepRe
   ContactTally tally;
   const double started = s.clock();
   // 3a start
+  const Vec3 drift = find_drift(dt, tables, support, neighbors);
   {
     const StageTimer timer(times.flight_ms);
-    tables.begin_step(dt, search.order_of_spheres(), tally);
+    tables.begin_step(dt, drift, search.order_of_spheres(), tally);
     support.begin_step(dt, tally);
   }
   // 3b near pairs, and the contacts of spheres
   const bool pair_phase = s.any_pairs(neighbors);
   report.counters.pair_phases += pair_phase;
   if (pair_phase)
-    s.find_near(dt, neighbors, times);
+    s.find_near(dt, drift, neighbors, times);
   else
     s.forget_near();
   search.invite_cornered(tables, support);

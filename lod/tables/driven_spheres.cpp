@@ -21,11 +21,21 @@ void DrivenSpheres::note(std::size_t block, std::int64_t begin, std::int64_t end
   driven.clear();
   for (std::int64_t i = begin; i < end; ++i) {
     if (!step_.touches(i)) continue;
-    const double before = spheres_.velocity(i).norm(), more = step_.velocity(i).norm() - before,
+    const Vec3 velocity = spheres_.velocity(i), driven_at = step_.velocity(i);
+    const double before = velocity.norm(), more = driven_at.norm() - before,
                  far = kDrivenFar * double(kinds_.radius[spheres_.kind[std::size_t(i)]]);
-    if (more > 0.0 && (ground_.has_parts() || more * constants_.wide_time > far))
-      driven.push_back({i, spheres_.position(i), before});
+    if ((more > 0.0 && ground_.has_parts()) || more * constants_.wide_time > far ||
+        is_driven(i, velocity, driven_at))
+      driven.push_back({i, spheres_.position(i), velocity});
   }
+}
+
+// As seen by others: made faster in the frame of the drift, or driven off a long way.
+bool DrivenSpheres::is_driven(std::int64_t place, const Vec3& before, const Vec3& velocity) const {
+  const Vec3& drift = constants_.drift;
+  const bool off = scene_.is_bound_to(scene_.way(place, spheres_.position(place), before));
+  const double more = off ? (velocity - before).norm() : (velocity - drift).norm() - (before - drift).norm();
+  return more * constants_.wide_time > kDrivenFar * double(kinds_.radius[spheres_.kind[std::size_t(place)]]);
 }
 
 // m: of what it has to others.
@@ -34,19 +44,35 @@ double DrivenSpheres::farthest_reach(std::int64_t place) const {
                                  : spheres_.radius[std::size_t(place)]);
 }
 
-// Within which all were looked for that it might touch.
+// Whether it has gone so far from where it would be, `reach` m about which all were looked for that it might
+// touch.
+bool DrivenSpheres::is_beyond(const Driven& driven, const Vec3& would_be, double reach) const {
+  const double off = (spheres_.position(driven.place) - would_be).norm();
+  return off > kDrivenFar * double(kinds_.radius[spheres_.kind[std::size_t(driven.place)]]) &&
+         off + farthest_reach(driven.place) > reach;
+}
+
+// For others in the frame of the drift; for sleepers, whom those that wake within a step were not asked for,
+// in that of the ground.
 bool DrivenSpheres::leaves_its_reach(const Driven& driven) const {
-  const double way = (spheres_.position(driven.place) - driven.from).norm(),
-               radius = double(kinds_.radius[spheres_.kind[std::size_t(driven.place)]]);
-  return way > kDrivenFar * radius &&
-         way + farthest_reach(driven.place) > double(step_.reach[std::size_t(driven.place)]);
+  const double time = constants_.wide_time, reach = double(step_.reach[std::size_t(driven.place)]);
+  return is_beyond(driven, driven.from + time * constants_.drift, reach) ||
+         is_beyond(driven, driven.from, way_of(driven).radius + time * driven.velocity.norm());
+}
+
+// On which it passes others.
+bool DrivenSpheres::leaves_its_way(const Driven& driven) const {
+  const BallWay way = way_of(driven);
+  return scene_.is_bound_to(way) &&
+         is_beyond(driven, driven.from + constants_.wide_time * driven.velocity, way.radius);
 }
 
 void DrivenSpheres::stop_before_unseen() {
   constexpr std::ptrdiff_t kFew = 32;  // for whom it is not worth while to sort all
   const auto of_step = std::span(driven_).first(blocks_);
   const auto count_leaving = [&](std::span<const Driven> all) {
-    return std::ranges::count_if(all, [&](const Driven& driven) { return leaves_its_reach(driven); });
+    return std::ranges::count_if(
+        all, [&](const Driven& driven) { return leaves_its_reach(driven) || leaves_its_way(driven); });
   };
   std::ptrdiff_t leaving = count_leaving(guests_);
   for (const std::vector<Driven>& of_block : of_step) leaving += count_leaving(of_block);
@@ -61,7 +87,8 @@ void DrivenSpheres::stop_before_unseen() {
 void DrivenSpheres::stop_before_unseen(const Driven& driven) {
   const Vec3 way = spheres_.position(driven.place) - driven.from;
   double free = find_way_to_ground(driven, way);
-  if (leaves_its_reach(driven)) free = std::min(free, find_way_to_others(driven, way));
+  const bool to_all = leaves_its_reach(driven);
+  if (to_all || leaves_its_way(driven)) free = std::min(free, find_way_to_others(driven, way, to_all));
   if (free < 1.0) spheres_.set_position(driven.place, driven.from + free * way);
 }
 
@@ -88,25 +115,28 @@ void DrivenSpheres::find_awake_near(const Vec3& center, double reach,
 // The part of the way, 0 to 1.
 double DrivenSpheres::find_way_to_ground(const Driven& driven, const Vec3& way) const {
   const double radius = double(kinds_.radius[spheres_.kind[std::size_t(driven.place)]]);
-  if (!ground_.has_parts() || way.norm() + radius <= near_ground_.reach_of(driven.place, driven.speed))
+  if (!ground_.has_parts() ||
+      way.norm() + radius <= near_ground_.reach_of(driven.place, driven.velocity.norm()))
     return 1.0;
   return find_free_way(ground_, driven.from, way, radius, [&](const Vec3& direction) {
     return double(scene_.ground_height(driven.place, direction));
   });
 }
 
-// m: where it was when the step began.
-Vec3 DrivenSpheres::find_start_of(std::int64_t place) const {
-  if (place >= spheres_.awake) return spheres_.position(place);
+// How it was when the step began.
+DrivenSpheres::Driven DrivenSpheres::find_start_of(std::int64_t place) const {
+  if (place >= spheres_.awake) return {place, spheres_.position(place), Vec3::Zero()};
   if (const auto guest = std::ranges::find(guests_, place, &Driven::place); guest != guests_.end())
-    return guest->from;
+    return *guest;
   const std::vector<Driven>& of_block = driven_[SphereScene::block_of(place)];
   const auto driven = std::ranges::lower_bound(of_block, place, {}, &Driven::place);
-  if (driven != of_block.end() && driven->place == place) return driven->from;
-  return spheres_.position(place) - constants_.wide_time * spheres_.velocity(place);
+  if (driven != of_block.end() && driven->place == place) return *driven;
+  const Vec3 velocity = spheres_.velocity(place);
+  return {place, spheres_.position(place) - constants_.wide_time * velocity, velocity};
 }
 
-double DrivenSpheres::find_way_to_others(const Driven& driven, const Vec3& way) {
+// `to_all`, or to those alone that it would pass on its way.
+double DrivenSpheres::find_way_to_others(const Driven& driven, const Vec3& way, bool to_all) {
   const std::int64_t self = driven.place;
   const Vec3 middle = driven.from + 0.5 * way;
   const double reach = 0.5 * way.norm() + farthest_reach(self);
@@ -117,6 +147,7 @@ double DrivenSpheres::find_way_to_others(const Driven& driven, const Vec3& way) 
   const auto may_be_met = [&](std::int64_t other) {
     const double limit = reach + farthest_reach(other);
     return other != self && (spheres_.position(other) - middle).squaredNorm() < limit * limit &&
+           (to_all || pass(way_of(driven), way_of(find_start_of(other)))) &&
            (!settings_.pair_filter ||
             settings_.pair_filter(spheres_.owner[std::size_t(self)], spheres_.owner[std::size_t(other)]));
   };
@@ -134,7 +165,8 @@ double DrivenSpheres::find_way_to(const Driven& driven, const Vec3& way, std::in
   const std::int64_t self = driven.place;
   const double radius = std::min(double(kinds_.radius[spheres_.kind[std::size_t(self)]]),
                                  double(kinds_.radius[spheres_.kind[std::size_t(other)]]));
-  const Vec3 own_end = spheres_.position(self), end = spheres_.position(other), start = find_start_of(other);
+  const Vec3 own_end = spheres_.position(self), end = spheres_.position(other),
+             start = find_start_of(other).from;
   const Vec3 relative = way - (end - start);
   double free = 1.0, gone = 0.0;
   for (int i = 0; i < kMostSteps && gone < 1.0; ++i) {

@@ -30,6 +30,7 @@ void set_apart(BallPairs& pairs, std::uint32_t spheres, BallPairs& others) {
 }  // namespace
 
 void ContactArrays::make_room(std::size_t elements, bool one_kind) {
+  lately = std::max(lately, elements);
   if (elements + kContactChunk > first.size()) {
     const std::size_t size = elements + elements / 16 + 2 * kContactChunk;
     const auto grow = [&](auto& array) {
@@ -48,12 +49,13 @@ void ContactArrays::clear() {
   if (first.size() < lately + lately / 2 + 8192) return;
   const std::size_t kept = lately;
   *this = {};
-  lately = kept;
   make_room(kept + kept / 8, true);
+  lately = kept;
 }
 
 void SphereContacts::clear() {
-  for (std::size_t i = 0; i < used_parts_; ++i) parts_[i].any_near = false, parts_[i].run = {};
+  for (std::size_t i = 0; i < used_parts_; ++i)
+    parts_[i].any_near = parts_[i].any_passed = false, parts_[i].run = {};
   used_parts_ = 0;
   for (auto& colour : of_colour_) colour.clear();
   free_arrays_.clear();
@@ -85,7 +87,9 @@ void SphereContacts::put_back(ContactArrays& arrays) {
 
 void SphereContacts::find(const Spheres& spheres, const SphereKinds& kinds, const CellGrid& grid,
                           float bounce_velocity, const StepConstants& constants, Simd simd,
-                          const JobRunner& jobs, std::vector<BallPairs>* others) {
+                          const JobRunner& jobs, std::vector<BallPairs>* others,
+                          const std::function<bool(std::uint32_t, std::uint32_t)>& pass) {
+  constexpr std::int64_t kManyPairs = 4;  // a body: on long ways alone they have more, in one part
   clear();
   if (others && others->size() < std::size_t(grid.parts())) others->resize(std::size_t(grid.parts()));
   used_parts_ = std::size_t(grid.parts()) + 2;
@@ -101,6 +105,10 @@ void SphereContacts::find(const Spheres& spheres, const SphereKinds& kinds, cons
          grid.find_pairs(i, pairs);
          parts_[std::size_t(i)].any_near = pairs.size() > 0;
          if (others) set_apart(pairs, std::uint32_t(spheres.awake), (*others)[std::size_t(i)]);
+         if (pass && pairs.size() > kManyPairs * spheres.awake) {
+           parts_[std::size_t(i)].any_passed = true;
+           pairs.filter([&](std::uint32_t first, std::uint32_t second) { return !pass(first, second); });
+         }
          if (pair_filter_)
            pairs.filter([&](std::uint32_t first, std::uint32_t second) {
              return pair_filter_(spheres.owner[first], spheres.owner[second]);
@@ -111,6 +119,7 @@ void SphereContacts::find(const Spheres& spheres, const SphereKinds& kinds, cons
          recall(spheres, bounce_velocity, constants, parts_[std::size_t(i)].run);
          put_back(arrays);
        }));
+  any_passed_ = std::ranges::any_of(std::span(parts_).first(used_parts_), &Part::any_passed);
 }
 
 void SphereContacts::add(const Spheres& spheres, const SphereKinds& kinds,

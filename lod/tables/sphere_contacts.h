@@ -38,7 +38,7 @@ struct ContactArrays {
   std::vector<std::int32_t> flush;           // which of the flush_contacts it is; kNotFlush: none of them
   std::vector<FlushContact> flush_contacts;
   std::vector<float> restitution, friction;  // of the two materials; empty where all bodies are of one kind
-  std::size_t count = 0, lately = 0;         // taken; at most, of late
+  std::size_t count = 0, lately = 0;         // taken; asked for at most, of late
 
   /// Calls `visit` with each array.
   template <class Visit>
@@ -48,7 +48,7 @@ struct ContactArrays {
   }
   /// Of all arrays at least.
   void make_room(std::size_t elements, bool one_kind);
-  /// Takes none; where far fewer were taken lately than there is room for, the room is given back.
+  /// Takes none; where far fewer were asked for lately than there is room for, the room is given back.
   void clear();
 };
 
@@ -125,9 +125,10 @@ class SphereContacts {
  public:
   /// Between awake bodies, with the impulses known from the last step; approaches faster than
   /// `bounce_velocity`, m/s, are impacts. Where the grid holds other balls behind the spheres, pairs with
-  /// those go to `others`, part by part.
+  /// those go to `others`, part by part. `pass`, of two places: that they do not meet on their long ways.
   void find(const Spheres& spheres, const SphereKinds& kinds, const CellGrid& grid, float bounce_velocity,
-            const StepConstants& constants, Simd simd, const JobRunner& jobs, std::vector<BallPairs>* others);
+            const StepConstants& constants, Simd simd, const JobRunner& jobs, std::vector<BallPairs>* others,
+            const std::function<bool(std::uint32_t, std::uint32_t)>& pass = {});
   /// m/s, by place awake: what forces give in the step to come, which velocities have already; none where no
   /// force acts. Before find(); refers to it until the next call.
   void set_pushes(std::span<const Eigen::Vector3f> by_place) { pushes_ = by_place; }
@@ -164,7 +165,8 @@ class SphereContacts {
   void archive(StateArchive& a) { a(known_, known_apart_, known_friction_); }
   const SphereContactSettings& settings() const { return settings_; }
   std::int64_t count() const;
-  bool any_near() const;  ///< whether find() met any pair, of spheres or with others
+  bool any_near() const;                           ///< whether find() met any pair, of spheres or with others
+  bool any_passed() const { return any_passed_; }  ///< whether find() asked who passes whom
   std::size_t bytes() const;
   /// Of a contact, in all its arrays.
   std::size_t bytes_each() const;
@@ -186,7 +188,7 @@ class SphereContacts {
  private:
   struct Part {
     int colour = 0;
-    bool any_near = false;
+    bool any_near = false, any_passed = false;
     ContactRun run;
     std::uint32_t known_begin = 0;  // of its contacts in known_
     SweepOutcome outcome;           // of the last round
@@ -244,6 +246,7 @@ class SphereContacts {
   std::vector<ContactArrays*> free_arrays_;
   std::mutex free_arrays_access_;
   std::size_t used_parts_ = 0;
+  bool any_passed_ = false;
   std::array<std::vector<std::uint32_t>, kGroundColour + 1> of_colour_;
   std::vector<lane::Row> ground_velocities_;  // m/s, of each plane that is touched in this step
   std::vector<KnownContact> known_;

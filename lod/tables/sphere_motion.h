@@ -33,7 +33,7 @@ inline constexpr float kSlides = 1e9f;
 /// Of a step, one element an awake body. What contacts read and add are rows, and one more stands for all
 /// that sleep.
 struct SphereStep {
-  std::vector<float> reach;  // m
+  std::vector<float> reach;  // m, as seen from the frame that goes with StepConstants::drift
   // The rows: a vector in xyz, a number in w. r is the sphere's radius, ω its angular velocity.
   // p  xyz  m/s   velocity, with the step's gravity and the impulses known so far
   //    w          how many contacts it has with other bodies, and with the ground that carries it among them
@@ -94,6 +94,7 @@ struct StepConstants {
   float gx = 0.0f, gy = 0.0f, gz = 0.0f;                                // m/s²
   double wide_time = 0.0, wide_gx = 0.0, wide_gy = 0.0, wide_gz = 0.0;  // for flight
   float gravity = 0.0f;                                                 // m/s²
+  Vec3 drift = Vec3::Zero();     // m/s, that most bodies have in common (rungs/drift.h)
   float resting_energy = 0.15f;  // J/kg over g R: the first threshold of 3.4
   float remembered = 1.0f;       // of forces known, the part that contacts begin with
   float held = 1.0f;             // of what the ground gave in the last step, likewise

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "lod/broad_phase/ball_way.h"
 #include "lod/statistical/kinds.h"
 #include "lod/statistical/rest_law.h"
 #include "lod/statistical/statistical_settings.h"
@@ -38,6 +39,17 @@ struct SphereScene {
 
   std::size_t place_of(int slot) const { return spheres.place_of_slot[std::size_t(slot)]; }
   const BodyKind& kind_of(std::int64_t place) const { return all_kinds[spheres.kind[std::size_t(place)]]; }
+  /// How one awake that begins there with that velocity goes through the step, in the frame of the drift.
+  BallWay way(std::int64_t place, const Vec3& from, const Vec3& velocity) const {
+    const Vec3 half_way = (0.5 * constants.wide_time) * (velocity - constants.drift);
+    return {from + half_way, half_way, double(step.reach[std::size_t(place)]) - 2.0 * half_way.norm()};
+  }
+  /// Whether it was not asked for all in the ball about its way, but for those alone that it meets on it.
+  bool is_bound_to(const BallWay& way) const { return contacts.any_passed() && way.is_long(); }
+  /// m: the reach of one awake, as seen by what lies still.
+  double still_reach(std::int64_t place) const {
+    return double(step.reach[std::size_t(place)]) + constants.wide_time * constants.drift.norm();
+  }
   float bounce_velocity() const {
     return float(StepWorld{}.bounce_velocity) + constants.gravity * constants.time;
   }  // with what gravity adds in a step

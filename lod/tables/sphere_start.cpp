@@ -41,6 +41,7 @@ struct StartLoop {
     std::uint8_t* on_ground = step.on_ground.data();
     std::int32_t* plane = step.plane.data();
     const bool update = c.update_radius;
+    const F3 drift{float(c.drift.x()), float(c.drift.y()), float(c.drift.z())};
     const float fall = 0.5f * c.gravity * c.time * c.time,
                 hulls = c.hulls ? 1.0f : 0.0f;  // what they reach to others is not the radius
 #pragma GCC ivdep
@@ -66,7 +67,8 @@ struct StartLoop {
       const bool flies = update & sphere & (moves == int(Motion::dynamic)) & (since_crowded[i] > 0);
       const float r = choose(sphere & (moves == int(Motion::settling)), resting, choose(flies, flying, was));
       radius[i] = r;
-      reach[i] = r + hulls * (farthest[k] - r) + 0.01f * size[k] + speed * c.time + fall;
+      const float relative = length(F3{v.x - drift.x, v.y - drift.y, v.z - drift.z});
+      reach[i] = r + hulls * (farthest[k] - r) + 0.01f * size[k] + relative * c.time + fall;
       p[i].x = v.x + c.gx * c.time, p[i].y = v.y + c.gy * c.time, p[i].z = v.z + c.gz * c.time, p[i].w = 0.0f;
       u[i].x = r * omega.x, u[i].y = r * omega.y, u[i].z = r * omega.z, u[i].w = 1.0f + r * r * softest[k];
       s[i].x = 0.0f, s[i].y = 0.0f, s[i].z = 0.0f, s[i].w = 0.5f * (dot(v, v) + dot(spun, omega));

@@ -93,8 +93,10 @@ void TablesLevel::take_guests(std::span<const Guest> guests, std::span<const Sta
     StatisticalBody body = bodies[k];
     const Vec3 unpressed = before[k].velocity + before[k].borne * constants_.wide_time;
     // What nothing stops would only go through it.
-    if (guest.touched && !guest.carried && body.velocity.squaredNorm() > unpressed.squaredNorm())
-      driven_.add_guest(std::int64_t(i), before[k].position, unpressed.norm());
+    if (guest.touched && !guest.carried &&
+        (body.velocity.squaredNorm() > unpressed.squaredNorm() ||
+         scene_.is_bound_to(scene_.way(std::int64_t(i), before[k].position, unpressed))))
+      driven_.add_guest(std::int64_t(i), before[k].position, unpressed);
     if (guest.touched && !guest.on_hull && step_.touches(std::int64_t(i)))
       loads_.keep(std::int64_t(i), before[k], body);
     else if (guest.touched && !guest.on_hull && std::int64_t(i) >= were_awake)

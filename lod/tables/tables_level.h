@@ -92,11 +92,13 @@ class TablesLevel {
   double sphere_radius(int slot) const { return double(spheres_.radius[place_of(slot)]); }
 
   // A step, in this order. `order`: the order of the awake spheres in the cells of the step before; empty if
-  // those cells were of other bodies.
-  void begin_step(double dt, std::span<const std::uint32_t> order, ContactTally& tally);
+  // those cells were of other bodies. `drift` (m/s): see find_drift().
+  void begin_step(double dt, const Vec3& drift, std::span<const std::uint32_t> order, ContactTally& tally);
   const Spheres& spheres() const { return spheres_; }
-  std::span<const float> reach() const { return step_.reach; }  ///< m, of those awake
-  CellGrid::Lent free_rows() { return step_.free_rows(); }      ///< scratch memory, until respond()
+  /// m, of those awake, as seen from the frame of the drift; and of one, as seen by what lies still.
+  std::span<const float> reach() const { return step_.reach; }
+  double still_reach(std::int64_t place) const { return scene_.still_reach(place); }
+  CellGrid::Lent free_rows() { return step_.free_rows(); }  ///< scratch memory, until respond()
   /// Finds the contacts of spheres. Pairs with other balls in `cells` go to `others`, if given. Returns
   /// whether any balls there meet.
   bool find_contacts(const CellGrid& cells, std::vector<BallPairs>* others);
@@ -141,7 +143,7 @@ class TablesLevel {
 
   // 3a
   void put_near_together(std::span<const std::uint32_t> order);
-  StepConstants next_constants(double dt);
+  StepConstants next_constants(double dt, const Vec3& drift);
   // Whether radii follow from how bodies move, in one loop.
   bool has_plain_radius() const {
     return settings_.tables.interpolate && !settings_.tables.draw_height &&

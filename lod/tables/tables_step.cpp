@@ -16,12 +16,13 @@ constexpr int kOrderInterval = 16;  // steps between looks at how far bodies hav
 
 }  // namespace
 
-void TablesLevel::begin_step(double dt, std::span<const std::uint32_t> order, ContactTally& tally) {
+void TablesLevel::begin_step(double dt, const Vec3& drift, std::span<const std::uint32_t> order,
+                             ContactTally& tally) {
   forget_all_given();
   fell_asleep_.clear();
   forces_.apply(dt, clips_, tally);
   put_near_together(order);
-  constants_ = next_constants(dt);
+  constants_ = next_constants(dt, drift);
   kinds_.take_friction(all_kinds_, materials_);
   step_.resize(std::size_t(spheres_.awake));
   if (!has_plain_radius() && steps_ % std::max(1, settings_.tables.radius_update_interval) == 0)
@@ -43,7 +44,7 @@ void TablesLevel::put_near_together(std::span<const std::uint32_t> order) {
   searched_ = spheres_.awake;
 }
 
-StepConstants TablesLevel::next_constants(double dt) {
+StepConstants TablesLevel::next_constants(double dt, const Vec3& drift) {
   const auto ticks = [](double time) { return std::int64_t(1000.0 * time); };
   const int step_ticks = int(std::min<std::int64_t>(255, ticks(elapsed_ + dt) - ticks(elapsed_)));
   elapsed_ += dt;
@@ -60,6 +61,7 @@ StepConstants TablesLevel::next_constants(double dt) {
           .wide_gy = g.y(),
           .wide_gz = g.z(),
           .gravity = float(g.norm()),
+          .drift = drift,
           .resting_energy = float(tables_.resting_energy),
           .remembered = remembered * float(known.of_forces),
           .held = remembered * float(known.of_impulses),
@@ -102,7 +104,13 @@ void TablesLevel::start_woken(std::int64_t begin) {
 bool TablesLevel::find_contacts(const CellGrid& cells, std::vector<BallPairs>* others) {
   const std::int64_t were_awake = spheres_.awake;
   contacts_.set_pushes(forces_.by_place());
-  contacts_.find(spheres_, kinds_, cells, scene_.bounce_velocity(), constants_, simd_, jobs_, others);
+  const auto way_of = [&](std::uint32_t i) {
+    return scene_.way(i, spheres_.position(i), spheres_.velocity(i));
+  };
+  const auto passes = [&](std::uint32_t first, std::uint32_t second) {
+    return pass(way_of(first), way_of(second));
+  };
+  contacts_.find(spheres_, kinds_, cells, scene_.bounce_velocity(), constants_, simd_, jobs_, others, passes);
   touched_sleepers_.find(TaskRef([&](std::int64_t slot) { wake(int(slot)); }));
   if (spheres_.awake > were_awake) start_woken(were_awake);
   if (!touched_sleepers_.pairs().empty())

@@ -12,11 +12,11 @@ constexpr double kOnGround = 1.01;  // over R: with its centre no higher, a body
 void TouchedSleepers::find_pairs() {
   for (std::int64_t i = 0; i < spheres_.awake; ++i) {
     const Vec3 position = spheres_.position(i);
-    still_.find_near(position, double(step_.reach[i]), [&](std::uint32_t other) {
+    const double reach = scene_.still_reach(i);
+    still_.find_near(position, reach, [&](std::uint32_t other) {
       const std::int64_t at = spheres_.place_of_slot[other];
-      const double limit =
-          double(step_.reach[i]) +
-          1.01 * double(constants_.hulls ? kinds_.farthest_reach[spheres_.kind[at]] : spheres_.radius[at]);
+      const double limit = reach + 1.01 * double(constants_.hulls ? kinds_.farthest_reach[spheres_.kind[at]]
+                                                                  : spheres_.radius[at]);
       if ((spheres_.position(at) - position).squaredNorm() < limit * limit)
         pairs_.emplace_back(std::uint32_t(i), other);
     });

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "lod/rungs/drift.h"
 #include "reference/random.h"
 #include "tests/lod/rungs/rung_fixture.h"
 #include "tests/reference/ode/ode_fixture.h"
@@ -47,9 +48,10 @@ struct Crowd3 {
   }
   void search_pairs() {
     ContactTally tally;
-    tables.begin_step(kSearchStep, search.order_of_spheres(), tally);
+    drift = find_drift(kSearchStep, tables, support, full);
+    tables.begin_step(kSearchStep, drift, search.order_of_spheres(), tally);
     support.begin_step(kSearchStep, tally);
-    search.fill(kSearchStep, tables, support, full);
+    search.fill(kSearchStep, drift, tables, support, full);
     search.find(tables, support, full);
     for (int slot = 0; slot < tables.size(); ++slot)  // a sphere may have been woken by another
       places[tables.owner(slot)].asleep = tables.asleep(slot);
@@ -89,6 +91,7 @@ struct Crowd3 {
   }
 
   std::vector<Place> places;  // by owner
+  Vec3 drift = Vec3::Zero();  // m/s, of the last search
   MaterialTable materials;
   Ground ground;
   Kinds& kinds = kinds_of_all();
@@ -117,15 +120,15 @@ bool concerns(const Crowd3::Place& a, const Crowd3::Place& b) {
          !(a.rung == Rung::full && b.rung == Rung::full);
 }
 
-void scatter(Crowd3& crowd, std::uint32_t seed, int count, std::initializer_list<Rung> rungs, double within) {
+void scatter(Crowd3& crowd, std::uint32_t seed, int count, const std::vector<Rung>& of, double within,
+             const Vec3& common = Vec3::Zero()) {
   RandomStream random(91, seed, 0);
-  const std::vector<Rung> of(rungs);
   for (int i = 0; i < count; ++i) {
     RigidState state;
     for (int axis = 0; axis < 3; ++axis) state.position[axis] = random.uniform(-within, within);
     state.orientation = random.orientation();
     const bool asleep = random.uniform() < 0.3;
-    if (!asleep) state.velocity = random.uniform(0.0, i % 10 == 0 ? 30.0 : 2.0) * random.direction();
+    if (!asleep) state.velocity = common + random.uniform(0.0, i % 10 == 0 ? 30.0 : 2.0) * random.direction();
     crowd.add(of[std::size_t(random.uniform(0.0, double(of.size())))], std::uint32_t(i), state, asleep);
   }
 }
@@ -146,8 +149,12 @@ void expect_all_found(Crowd3& crowd) {
       if (gap < 0.0) {
         EXPECT_TRUE(found) << a << ' ' << b << " overlap by " << -gap;
       }
-      // Beyond what both travel, what gravity adds and a part of their sizes they are not near.
-      const double speeds = one.state.velocity.norm() + other.state.velocity.norm();
+      // Beyond what both travel in the frame of the search, what gravity adds and a part of their sizes they
+      // are not near.
+      const auto speed = [&](const Crowd3::Place& p) {
+        return p.asleep ? crowd.drift.norm() : (p.state.velocity - crowd.drift).norm();
+      };
+      const double speeds = speed(one) + speed(other);
       const auto excess = [](const Crowd3::Place& p) {
         return (p.rung == Rung::tables ? 0.5 : 0.05) * p.radius;
       };
@@ -171,6 +178,48 @@ TEST(NearSearch, FindsEachPairThatMayMeetOnceOnAnyRungs) {
       crowd.search_pairs();
       expect_all_found(crowd);
     }
+}
+
+// What falls together is near what sleeps beside its way, and not all that falls with it.
+TEST(NearSearch, LooksFromTheFrameOfWhatFallsTogether) {
+  for (const auto& mix : {std::vector{Rung::support},
+                          {Rung::support, Rung::full},
+                          {Rung::support, Rung::tables},
+                          {Rung::tables, Rung::support, Rung::full}})
+    for (std::uint32_t seed = 0; seed < 4; ++seed) {
+      Crowd3 crowd;
+      scatter(crowd, seed, 60, mix, 1.5 + 0.3 * seed, {3.0, 0.0, -80.0});
+      crowd.search_pairs();
+      EXPECT_GT(crowd.drift.norm(), 50.0);
+      expect_all_found(crowd);
+      if (crowd.tables.size() > 0) continue;  // sleepers of `tables` are no matter of those woken
+      std::vector<Participant> woken;
+      for (int slot = 0; slot < crowd.support.size(); ++slot) {
+        if (!crowd.support.asleep(slot)) continue;
+        crowd.support.wake(slot);
+        crowd.places[crowd.support.body(slot).owner].asleep = false;
+        woken.push_back(Participant::statistical(std::size_t(slot)));
+      }
+      crowd.search.find_woken(0.0, crowd.support, crowd.full, woken);
+      expect_all_found(crowd);
+    }
+}
+
+TEST(Drift, IsWhatMostThatMovesHasInCommon) {
+  const auto drift_of = [](const Vec3& common, double own, Rung rung) {
+    Crowd3 crowd;
+    RandomStream random(94, 0, 0);
+    for (std::uint32_t i = 0; i < 30; ++i)
+      crowd.add(rung, i, testing::at({2.0 * i, 0, 0}, common + own * random.direction()), false);
+    crowd.search_pairs();
+    return crowd.drift;
+  };
+  const Vec3 common(0, 4, -60);
+  for (const Rung rung : {Rung::tables, Rung::support, Rung::full}) {
+    EXPECT_LT((drift_of(common, 2.0, rung) - common).norm(), 2.0);
+    EXPECT_TRUE(drift_of(0.1 * common, 2.0, rung).isZero(0.0)) << "slow";
+    EXPECT_TRUE(drift_of(common, 60.0, rung).isZero(0.0)) << "each its own way";
+  }
 }
 
 // A sphere that another has just woken is in no cell and sleeps no more: hulls meet it all the same.
@@ -232,7 +281,7 @@ TEST(NearSearch, FindsWhatOneFindsThatNeverLookedBefore) {
     }
     crowd.search_pairs();
     NearSearch fresh(crowd.settings, crowd.sleepers, crowd.jobs);
-    fresh.fill(kSearchStep, crowd.tables, crowd.support, crowd.full);
+    fresh.fill(kSearchStep, crowd.drift, crowd.tables, crowd.support, crowd.full);
     fresh.find(crowd.tables, crowd.support, crowd.full);
     const auto same = [](const NearPair& a, const NearPair& b) { return a == b; };
     ASSERT_TRUE(std::ranges::equal(crowd.search.pairs(), fresh.pairs(), same)) << round;
@@ -264,7 +313,7 @@ TEST(NearSearch, FindsThePairsOfThoseThatAreWoken) {
         crowd.places[crowd.full[i].owner].asleep = false;
         woken.push_back(Participant::full(i));
       }
-      const auto found = crowd.search.find_woken(kSearchStep, crowd.support, crowd.full, woken);
+      const auto found = crowd.search.find_woken(0.0, crowd.support, crowd.full, woken);
       EXPECT_GT(found.size(), 0u);
       EXPECT_EQ(crowd.search.pairs().size(), before + found.size());
       expect_all_found(crowd);

@@ -48,6 +48,27 @@ class Statistical : public ::testing::TestWithParam<StatisticalModel> {
   TablesOptions tables_;
 };
 
+// In a row that is struck, far above the ground, nobody passes the next one.
+TEST_P(Statistical, ARowIsStruckWhileItFallsFast) {
+  StatisticalSettings settings;
+  settings.gravity = Vec3::Zero();
+  OneRung level(GetParam(), settings, ground_, materials_);
+  const Vec3 common(0, 0, -100);  // m/s
+  for (int i = 0; i < 8; ++i)
+    add(level, testing::at({0.6 * i, 0, 1000}, common + Vec3(i == 0 ? 40.0 : 0.0, 0, 0)));
+  StepReport report;
+  for (int step = 0; step < 20; ++step) level.step(1.0 / 60, {}, report);
+  Vec3 momentum = Vec3::Zero();  // over the mass of one
+  for (int i = 0; i < 8; ++i) {
+    momentum += level.state(i).velocity - common;
+    if (i > 0) {
+      EXPECT_GT(level.state(i).position.x(), level.state(i - 1).position.x()) << i;
+    }
+  }
+  EXPECT_NEAR(momentum.x(), 40.0, 1e-3);
+  EXPECT_GT(level.state(7).velocity.x(), 2.0);
+}
+
 TEST_P(Statistical, EnergyOfADropNeverRisesAndItComesToRest) {
   for (std::uint32_t trial = 0; trial < 40; ++trial) {
     RandomStream random(9, trial, 0);
