@@ -32,8 +32,8 @@ concept PlainState = std::is_trivially_destructible_v<T> && !std::is_pointer_v<T
 
 class StateArchive {
  public:
-  /// Writes.
-  StateArchive() = default;
+  /// Writes, most likely no more than so many bytes.
+  explicit StateArchive(std::size_t expected = 0) { bytes_.reserve(expected); }
   /// Reads; `shapes` are those of the writer, in its order.
   StateArchive(std::span<const std::byte> bytes, std::vector<std::shared_ptr<const Shape>> shapes)
       : reading_(true), left_(bytes), shapes_(std::move(shapes)) {}

@@ -266,14 +266,15 @@ void CallersBodies::archive(StateArchive& a, const SpaceMirror* mirror) {
   note_places();
 }
 
-void CallersBodies::each_near(const Vec3& center, double radius, const BodyProperties& own,
-                              const std::function<void(const Shape&, const RigidState&)>& visit) const {
+void CallersBodies::each_near(
+    const Vec3& center, double radius, const BodyProperties& own,
+    const std::function<void(std::uint32_t, const Shape&, const RigidState&)>& visit) const {
   for (const Entry& entry : bodies_) {
     if (!entry.shape || !may_meet(own.category, own.collide, entry.bits.category, entry.bits.collide))
       continue;
     const RigidState state = callers::state(entry.body);
     const double reach = radius + entry.shape->radius;
-    if ((state.position - center).squaredNorm() < reach * reach) visit(*entry.shape, state);
+    if ((state.position - center).squaredNorm() < reach * reach) visit(entry.owner, *entry.shape, state);
   }
 }
 
@@ -295,6 +296,11 @@ std::vector<CallersPart> CallersBodies::find_parts(const SpaceMirror& mirror) co
 dxBody* CallersBodies::body_of(std::uint32_t owner) const {
   const auto known = of_number_.find(owner);
   return known == of_number_.end() ? nullptr : known->second;
+}
+
+std::optional<RigidState> CallersBodies::state_of(std::uint32_t owner) const {
+  dxBody* const body = body_of(owner);
+  return body ? std::optional(callers::state(body)) : std::nullopt;
 }
 
 }  // namespace lodestone

@@ -139,7 +139,7 @@ void Manager::sleep(BodyId body) {
   impl_->levels.put_to_sleep(index);
   impl_->choose.groups().note_put(index);
   impl_->changes.note(index);
-  impl_->left_places.note_place(impl_->levels, body);
+  impl_->left_places.lay(impl_->levels, body);
   impl_->queries.lay_down(index);
   impl_->recorder.note(Call::sleep, body);
 }

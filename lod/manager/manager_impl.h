@@ -39,6 +39,7 @@ struct Manager::Impl {
   StepLevels step_levels{levels};
   StepChanges changes{levels};
   LeftPlaces left_places;
+  std::size_t last_snapshot = 0;  // bytes of its state
   ContactEvents events;
   QueryScene queries{levels};
   StepReport report;

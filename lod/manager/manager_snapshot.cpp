@@ -28,7 +28,7 @@ struct Circumstances {
 
 struct Header {
   std::array<char, 8> magic = {'L', 'O', 'D', 'E', 'S', 'N', 'A', 'P'};
-  std::uint32_t format = 23, version = LODESTONE_VERSION;
+  std::uint32_t format = 24, version = LODESTONE_VERSION;
   // Sizes of what goes as it lies in memory: a build with other ones is no reader.
   std::array<std::uint16_t, 8> layout = {sizeof(void*),           sizeof(BodyRecord),   sizeof(BodyLevel),
                                          sizeof(StatisticalBody), sizeof(ClipPlayback), sizeof(StepReport),
@@ -186,25 +186,28 @@ void Manager::Impl::archive(StateArchive& a, std::span<const std::shared_ptr<con
 std::vector<std::byte> Manager::snapshot() const {
   if (impl_->waits_for_world_step)
     throw_input_error("snapshot", "one between before_world_step and after_world_step", "none");
-  StateArchive state;
+  // To write in room that grows takes long. A body of a heap takes more, one that sleeps less.
+  constexpr std::size_t kOfOneBody = 1024;
+  StateArchive state(
+      std::max(impl_->last_snapshot + impl_->last_snapshot / 8, kOfOneBody * impl_->levels.bodies.indices()));
   const auto held = impl_->queries.hold_ground();
   const auto signatures = archive_signatures(state, impl_->levels);
   impl_->choose.groups().archive_detached(state);
   impl_->archive(state, signatures);  // which changes nothing where it writes
-  std::vector<std::byte> body;
+  impl_->last_snapshot = state.bytes().size();
+  Header header;
+  std::vector<std::byte> bytes;
+  bytes.reserve(sizeof header + state.shapes().size() * sizeof(ShapeName) + state.bytes().size());
+  append(bytes, &header, sizeof header);
   for (const std::shared_ptr<const Shape>& shape : state.shapes()) {
     const ShapeName name = name_of(*shape);
-    append(body, &name, sizeof name);
+    append(bytes, &name, sizeof name);
   }
-  append(body, state.bytes().data(), state.bytes().size());
-  Header header;
+  append(bytes, state.bytes().data(), state.bytes().size());
   header.circumstances = circumstances_of(impl_->levels, impl_->callers_world != nullptr);
   header.shapes = state.shapes().size(), header.bytes = state.bytes().size(),
-  header.checksum = checksum(body);
-  std::vector<std::byte> bytes;
-  bytes.reserve(sizeof header + body.size());
-  append(bytes, &header, sizeof header);
-  append(bytes, body.data(), body.size());
+  header.checksum = checksum(std::span(bytes).subspan(sizeof header));
+  std::memcpy(bytes.data(), &header, sizeof header);
   return bytes;
 }
 

@@ -44,11 +44,46 @@ void BodyGrid::grow() {
   if (2 * used_ < cells_.size()) return;
   const auto filled =
       std::size_t(std::ranges::count_if(cells_, [](const Cell& cell) { return cell.head != kNone; }));
+  bounds_.fill({});
+  for (const Place& place : places_)
+    if (place.radius > 0.0) note_bounds(place);
   std::vector<Cell> before(4 * filled < cells_.size() ? cells_.size() : 2 * cells_.size());
   std::swap(before, cells_);
   used_ = 0;
   for (const Cell& cell : before)
     if (cell.head != kNone) cells_[place_of(cell.key)] = cell, ++used_;
+}
+
+void BodyGrid::note_bounds(const Place& place) {
+  const Vec3 reach = Vec3::Constant(kDrawn * place.radius);
+  Eigen::AlignedBox3d& bounds = bounds_[std::size_t(level_of(place.radius))];
+  bounds.extend(place.position - reach).extend(place.position + reach);
+}
+
+BodyGrid::Part BodyGrid::part_within(const Eigen::AlignedBox3d& bounds, const Vec3& from,
+                                     const Vec3& direction, double length, double margin) {
+  constexpr double kRounding = 1e-9;  // over how far from the origin all this is
+  const double spare = margin + kRounding * (from.cwiseAbs().maxCoeff() + bounds.min().cwiseAbs().maxCoeff() +
+                                             bounds.max().cwiseAbs().maxCoeff());
+  Part part{0.0, length};
+  for (int a = 0; a < 3; ++a) {
+    const double low = bounds.min()[a] - spare - from[a], high = bounds.max()[a] + spare - from[a];
+    if (direction[a] == 0.0) {
+      if (low > 0.0 || high < 0.0) return {1.0, 0.0};
+      continue;
+    }
+    const auto [first, last] = std::minmax({low / direction[a], high / direction[a]});
+    part = {std::max(part.from, first), std::min(part.to, last)};
+  }
+  return part;
+}
+
+bool BodyGrid::comes_near(const Place& place, const Vec3& from, const Vec3& direction, double length,
+                          double margin) {
+  const Vec3 to = place.position - from;
+  const double along_ray = std::clamp(to.dot(direction), 0.0, length),
+               reach = kDrawn * place.radius + margin + 1e-9 * to.norm();
+  return (to - along_ray * direction).squaredNorm() <= reach * reach;
 }
 
 template <class Visit>
@@ -85,6 +120,7 @@ void BodyGrid::put(std::uint32_t body, const Vec3& position, double radius) {
     return;
   forget(body);
   places_[body] = {position, radius};
+  note_bounds(places_[body]);
   each_cell(places_[body], [&](const Key& key) {
     grow();
     Cell& cell = cells_[place_of(key)];

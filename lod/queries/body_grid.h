@@ -60,6 +60,16 @@ class BodyGrid {
     return std::int32_t(std::floor(std::fmin(std::fmax(at, -2e9), 2e9)));
   }
   static Range range_of(const Eigen::AlignedBox3d& box, int level);
+  /// m along the ray: from where to where it may be within `margin` of the bounds; from beyond `to` if
+  /// nowhere.
+  struct Part {
+    double from = 0.0, to = 0.0;
+  };
+  static Part part_within(const Eigen::AlignedBox3d& bounds, const Vec3& from, const Vec3& direction,
+                          double length, double margin);
+  static bool comes_near(const Place& place, const Vec3& from, const Vec3& direction, double length,
+                         double margin);
+  void note_bounds(const Place& place);
   std::size_t place_of(const Key& key) const;
   const Cell* find(const Key& key) const;
   void grow();
@@ -72,7 +82,8 @@ class BodyGrid {
   std::size_t used_ = 0, bodies_ = 0;
   std::vector<Entry> entries_;
   std::uint32_t free_entry_ = kNone;
-  std::array<std::uint32_t, kLevels> of_level_{};  // bodies
+  std::array<std::uint32_t, kLevels> of_level_{};      // bodies
+  std::array<Eigen::AlignedBox3d, kLevels> bounds_{};  // m, of their balls, and of some that have gone
 };
 
 template <class Found>
@@ -96,30 +107,36 @@ void BodyGrid::find_near(const Eigen::AlignedBox3d& box, const Found& found) con
   }
 }
 
-// From cell to cell (Amanatides and Woo, A fast voxel traversal algorithm, 1987). A ray with a margin is cut
-// into boxes.
+// From cell to cell (Amanatides and Woo, A fast voxel traversal algorithm, 1987), on what of the ray is
+// within the bounds of the bodies. A ray with a margin is cut into boxes.
 template <class Found>
 void BodyGrid::find_along(const Vec3& from, const Vec3& direction, double length, double margin,
                           const Found& found) const {
+  double left = length;
   for (int level = 0; level < kLevels; ++level) {
     if (of_level_[std::size_t(level)] == 0) continue;
     const double edge = edge_of(level);
-    double left = length;
+    const auto [begin, end] = part_within(bounds_[std::size_t(level)], from, direction, left, margin);
+    if (begin > end) continue;
+    const Vec3 start = from + begin * direction;
     constexpr double kFarthestCell = 1e9;            // along() knows no farther ones
     const double thick = 2.0 * margin / edge + 2.0;  // cells
-    const bool looks_at_more = margin > 0.0 ? thick * thick * (length / edge + thick) > double(places_.size())
-                                            : length / edge > 4.0 * double(cells_.size());
-    if (!std::isfinite(length) || looks_at_more ||
-        !(from.cwiseAbs().maxCoeff() < kFarthestCell * edge)) {  // farther than it is worth
-      for (std::uint32_t body = 0; body < places_.size(); ++body)
-        if (places_[body].radius > 0.0 && level_of(places_[body].radius) == level)
+    const bool looks_at_more = margin > 0.0
+                                   ? thick * thick * ((end - begin) / edge + thick) > double(places_.size())
+                                   : (end - begin) / edge > 4.0 * double(cells_.size());
+    if (looks_at_more || !(start.cwiseAbs().maxCoeff() < kFarthestCell * edge)) {
+      for (std::uint32_t body = 0; body < places_.size(); ++body) {
+        const Place& place = places_[body];
+        if (place.radius > 0.0 && level_of(place.radius) == level &&
+            comes_near(place, from, direction, left, margin))
           left = std::min(left, found(body));
+      }
     } else if (margin > 0.0) {
       const double piece = std::max(edge, 2.0 * margin);
-      for (double at = 0.0; at <= left; at += piece) {
-        const Vec3 begin = from + at * direction, end = from + std::min(at + piece, left) * direction,
+      for (double at = begin; at <= std::min(left, end); at += piece) {
+        const Vec3 first = from + at * direction, last = from + std::min({at + piece, left, end}) * direction,
                    around = Vec3::Constant(margin);
-        const Range range = range_of({begin.cwiseMin(end) - around, begin.cwiseMax(end) + around}, level);
+        const Range range = range_of({first.cwiseMin(last) - around, first.cwiseMax(last) + around}, level);
         for (std::int32_t z = range.low[2]; z <= range.high[2]; ++z)
           for (std::int32_t y = range.low[1]; y <= range.high[1]; ++y)
             for (std::int32_t x = range.low[0]; x <= range.high[0]; ++x)
@@ -132,13 +149,14 @@ void BodyGrid::find_along(const Vec3& from, const Vec3& direction, double length
       std::array<double, 3> next{}, across{};
       for (int a = 0; a < 3; ++a) {
         const auto i = std::size_t(a);
-        cell[i] = along(from[a] / edge);
+        cell[i] = along(start[a] / edge);
         step[i] = direction[a] > 0.0 ? 1 : -1;
         across[i] = direction[a] == 0.0 ? 1e300 : edge / std::abs(direction[a]);
-        next[i] =
-            direction[a] == 0.0 ? 1e300 : ((cell[i] + (direction[a] > 0.0)) * edge - from[a]) / direction[a];
+        next[i] = direction[a] == 0.0
+                      ? 1e300
+                      : begin + ((cell[i] + (direction[a] > 0.0)) * edge - start[a]) / direction[a];
       }
-      for (double at = 0.0; at <= left;) {
+      for (double at = begin; at <= std::min(left, end);) {
         if (const Cell* here = find({cell[0], cell[1], cell[2], level}))
           for (std::uint32_t entry = here->head; entry != kNone; entry = entries_[entry].next)
             left = std::min(left, found(entries_[entry].body));
@@ -148,7 +166,6 @@ void BodyGrid::find_along(const Vec3& from, const Vec3& direction, double length
         cell[a] += step[a];
       }
     }
-    length = left;
   }
 }
 

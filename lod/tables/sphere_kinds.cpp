@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "lod/tables/tables_model.h"
 
@@ -32,11 +33,68 @@ float share_of_reach(float reach, const Reach& of) {
 
 }  // namespace
 
-void SphereKinds::take(const Kinds& kinds, std::uint32_t kind, double gravity) {
+void SphereKinds::take(const Kinds& kinds, std::uint32_t number, double gravity) {
   if (size() < kinds.size()) resize(kinds.size());
-  if (birth_[kind] == kinds.birth(kind)) return;
-  birth_[kind] = kinds.birth(kind);
-  set(kind, kinds[kind], gravity);
+  if (birth_[number] == kinds.birth(number)) return;
+  birth_[number] = kinds.birth(number);
+  const BodyKind& kind = kinds[number];
+  Known& known = known_[number];
+  const HullSamplesKey samples{kind.shape->content_hash, kind.shape->radius, kind.faces != nullptr};
+  if (known.shape.lock() == kind.shape && known.signature.lock() == kind.signature &&
+      known.material == kind.material && known.samples == samples)
+    return set_blend_time(number, kind, gravity);
+  if (known.samples != samples) {
+    if (known.samples.radius > 0.0) samples_.keep(known.samples, samples_of(number));
+    if (const HullSamples* kept = samples_.find(samples))
+      set_samples(number, *kept);
+    else
+      set_samples(number, make_hull_samples(*kind.shape, kind.faces.get()));
+  }
+  known = {kind.shape, kind.signature, kind.material, samples};
+  set(number, kind, gravity);
+}
+
+namespace {
+
+// Of the maps of all kinds, that of one.
+auto map_of(auto& maps, std::uint32_t k) {
+  return std::span(maps).subspan(k * std::size_t(kHullHeights), kHullHeights);
+}
+
+}  // namespace
+
+void SphereKinds::set_samples(std::uint32_t k, const HullSamples& samples) {
+  std::ranges::copy(samples.height, map_of(hull_height, k).begin());
+  std::ranges::copy(samples.pair_height, map_of(pair_height, k).begin());
+  std::ranges::copy(samples.unsteady, map_of(unsteady, k).begin());
+  std::ranges::copy(samples.patch, map_of(patch, k).begin());
+  std::ranges::copy(samples.pair_face, map_of(pair_face, k).begin());
+  const Mat3& levers = samples.rolling_levers;
+  rxx[k] = float(levers(0, 0)), ryy[k] = float(levers(1, 1)), rzz[k] = float(levers(2, 2));
+  rxy[k] = float(levers(0, 1)), rxz[k] = float(levers(0, 2)), ryz[k] = float(levers(1, 2));
+}
+
+HullSamples SphereKinds::samples_of(std::uint32_t k) const {
+  const auto copy_of = [&](const auto& maps) {
+    const auto map = map_of(maps, k);
+    return std::vector(map.begin(), map.end());
+  };
+  Mat3 levers;
+  levers << rxx[k], rxy[k], rxz[k], rxy[k], ryy[k], ryz[k], rxz[k], ryz[k], rzz[k];
+  return {copy_of(hull_height), copy_of(pair_height), copy_of(unsteady),
+          copy_of(patch),       copy_of(pair_face),   levers};
+}
+
+void SphereKinds::set_gravity(const Kinds& kinds, double gravity) {
+  for (std::uint32_t k = 0; k < size(); ++k)
+    if (birth_[k] != 0 && birth_[k] == kinds.birth(k) && kinds[k].shape) set_blend_time(k, kinds[k], gravity);
+}
+
+void SphereKinds::forget() { std::ranges::fill(birth_, 0); }
+
+void SphereKinds::set_blend_time(std::uint32_t k, const BodyKind& kind, double gravity) {
+  blend_time[k] =
+      float(TablesSettings{}.blend_time * std::sqrt(kind.shape->radius / std::max(1e-9, gravity)));
 }
 
 void SphereKinds::take_friction(const Kinds& kinds, const MaterialTable& materials) {
@@ -62,7 +120,7 @@ void SphereKinds::resize(std::size_t size) {
   patch.resize(size * std::size_t(kHullHeights));
   hull_height.resize(size * std::size_t(kHullHeights));
   material.resize(size), first_pose.resize(size), birth_.resize(size), pose_room_.resize(size),
-      is_slender_.resize(size), is_ball_.resize(size);
+      known_.resize(size), is_slender_.resize(size), is_ball_.resize(size);
 }
 
 void SphereKinds::set(std::uint32_t k, const BodyKind& kind, double gravity) {
@@ -89,14 +147,10 @@ void SphereKinds::set(std::uint32_t k, const BodyKind& kind, double gravity) {
   };
   for (int i = 0; i <= kHeightSamples; ++i)
     height[k * std::size_t(kHeightSamples + 1) + std::size_t(i)] = float(height_at(i) * shape.radius);
-  const auto map_of = [&](auto& maps) {
-    return std::span(maps).subspan(k * std::size_t(kHullHeights), kHullHeights);
-  };
-  sample_hull(shape, {map_of(hull_height), map_of(pair_height), map_of(patch), map_of(pair_face)});
   const Mat3 give = Eigen::SelfAdjointEigenSolver<Mat3>(3.0 * inertia).operatorInverseSqrt();
   gxx[k] = float(give(0, 0)), gyy[k] = float(give(1, 1)), gzz[k] = float(give(2, 2));
   gxy[k] = float(give(0, 1)), gxz[k] = float(give(0, 2)), gyz[k] = float(give(1, 2));
-  const auto [thin, far] = std::ranges::minmax(map_of(hull_height));
+  const auto [thin, far] = std::ranges::minmax(map_of(hull_height, k));
   tipping_ -= tips[k] > 0.0f;
   const float reach = far / thin;
   const float length = share_of_reach(reach, kLong);
@@ -106,13 +160,9 @@ void SphereKinds::set(std::uint32_t k, const BodyKind& kind, double gravity) {
   patch_reach[k] = kPatchReach * (1.0f - length);
   thickness[k] = thin / far;
   tipping_ += tips[k] > 0.0f;
-  farthest_reach[k] = std::ranges::max(map_of(pair_height));
+  farthest_reach[k] = std::ranges::max(map_of(pair_height, k));
   most_reach = std::max({most_reach, farthest_reach[k], radius[k]});
-  const Mat3 levers = find_rolling_levers(shape);
-  rxx[k] = float(levers(0, 0)), ryy[k] = float(levers(1, 1)), rzz[k] = float(levers(2, 2));
-  rxy[k] = float(levers(0, 1)), rxz[k] = float(levers(0, 2)), ryz[k] = float(levers(1, 2));
-  blend_time[k] = float(TablesSettings{}.blend_time * std::sqrt(shape.radius / std::max(1e-9, gravity)));
-  find_unsteady(kind.faces.get(), map_of(pair_face), map_of(unsteady));
+  set_blend_time(k, kind, gravity);
   set_poses(k, kind);
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lod/statistical/kinds.h"
-#include "lod/tables/hull_heights.h"
+#include "lod/tables/hull_samples.h"
 
 namespace lodestone {
 
@@ -42,6 +42,10 @@ struct SphereKinds {
   }
   /// Takes in a kind, unless it is known; m/s².
   void take(const Kinds& kinds, std::uint32_t kind, double gravity);
+  /// m/s², of all that are known from now on.
+  void set_gravity(const Kinds& kinds, double gravity);
+  /// None is known any more. Those that are taken in anew as they were are taken in fast.
+  void forget();
   /// Of each kind that a body has; materials may be changed between steps.
   void take_friction(const Kinds& kinds, const MaterialTable& materials);
   std::size_t size() const { return radius.size(); }
@@ -58,8 +62,20 @@ struct SphereKinds {
  private:
   void resize(std::size_t size);
   void set(std::uint32_t k, const BodyKind& kind, double gravity);
+  void set_samples(std::uint32_t k, const HullSamples& samples);
+  HullSamples samples_of(std::uint32_t k) const;
+  void set_blend_time(std::uint32_t k, const BodyKind& kind, double gravity);
   void set_poses(std::uint32_t k, const BodyKind& kind);
 
+  HullSampleStore samples_;  // of those whose numbers others have
+  // As the number was taken in last.
+  struct Known {
+    std::weak_ptr<const Shape> shape;
+    std::weak_ptr<const Signature> signature;
+    MaterialId material = 0;
+    HullSamplesKey samples;
+  };
+  std::vector<Known> known_;
   std::vector<std::uint64_t> birth_;     // of the kind that has the number; 0: of none yet
   std::vector<std::int32_t> pose_room_;  // poses that fit where its own are
   std::vector<std::uint8_t> is_slender_, is_ball_;

@@ -155,8 +155,7 @@ void TablesLevel::put_to_sleep(int slot) {
 
 void TablesLevel::set_gravity(const Vec3& gravity) {
   settings_.gravity = gravity;
-  kinds_ = {};
-  for (const std::uint32_t kind : spheres_.kind) kinds_.take(all_kinds_, kind, gravity.norm());
+  kinds_.set_gravity(all_kinds_, gravity.norm());
   for (std::int64_t i = 0; i < spheres_.awake; ++i)
     if (spheres_.motion[std::size_t(i)] == Motion::settling)
       spheres_.motion[std::size_t(i)] = Motion::dynamic;
@@ -181,7 +180,7 @@ void TablesLevel::archive(StateArchive& a) {
   a(spheres_, contacts_, elapsed_, lengths_, steps_, one_mass_, eased_, searched_, fell_asleep_, woke_,
     near_ground_, given_, forces_, clips_, loads_, rubbing_);
   if (!a.reading()) return;
-  kinds_ = {};
+  kinds_.forget();
   for (const std::uint32_t kind : spheres_.kind) kinds_.take(all_kinds_, kind, settings_.gravity.norm());
   if (!settings_.tables.as_published()) return;
   clips_.end_all();  // of a level that had them

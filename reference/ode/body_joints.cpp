@@ -62,6 +62,31 @@ std::optional<Sliding> sliding_of(dJointID joint) {
   return {};
 }
 
+/// Of a prismatic joint with a rotoide (PR) that has a first body; those that have only a second one go their
+/// own ways in ODE.
+std::optional<Sliding> pr_sliding_of(dJointID joint) {
+  if (dJointGetType(joint) != dJointTypePR || !dJointGetBody(joint, 0)) return {};
+  return Sliding{read(joint, dJointGetPRAxis1), dJointGetPRPosition(joint), dJointGetPRParam};
+}
+
+/// The axes of an LMotor that push: directions, speeds (m/s) and greatest forces (N).
+struct PushedAxis {
+  Vec3 direction;
+  double speed = 0.0, force = 0.0;
+};
+std::vector<PushedAxis> pushed_axes(dJointID motor) {
+  std::vector<PushedAxis> pushed;
+  for (int i = 0; i < dJointGetLMotorNumAxes(motor); ++i) {
+    const double force = dJointGetLMotorParam(motor, dParamFMax + i * dParamGroup2);
+    if (!(force > 0.0)) continue;
+    dVector3 axis;
+    dJointGetLMotorAxis(motor, i, axis);
+    pushed.push_back(
+        {{axis[0], axis[1], axis[2]}, dJointGetLMotorParam(motor, dParamVel + i * dParamGroup2), force});
+  }
+  return pushed;
+}
+
 double hinge_angle(dJointID hinge) { return sense_of(hinge) * dJointGetHingeAngle(hinge); }
 
 void hold(dxBody* second, const Vec3& point, std::vector<JointRow>& rows) {
@@ -98,6 +123,10 @@ JointParameters parameters_of(dJointType type) {
       return {dJointGetSliderParam};
     case dJointTypePiston:
       return {dJointGetPistonParam};
+    case dJointTypePR:
+      return {dJointGetPRParam, 2};
+    case dJointTypePU:
+      return {dJointGetPUParam, 3};
     case dJointTypeHinge2:
       return {dJointGetHinge2Param, 2};
     case dJointTypeUniversal:
@@ -175,6 +204,15 @@ void find_joint_rows(dxBody* body, double reach, std::vector<JointRow>& rows) {
         rows.push_back({second, at + reach * across, axis.cross(across)});
         break;
       }
+      case dJointTypePR: {
+        const std::optional<Sliding> slides = pr_sliding_of(joint);
+        if (!slides) break;
+        const Vec3 anchor = read(joint, dJointGetPRAnchor), along = slides->direction,
+                   about = read(joint, dJointGetPRAxis2), across = along.cross(about).normalized();
+        for (const double side : {0.5, -0.5}) rows.push_back({second, anchor + side * reach * about, across});
+        for (const double side : {0.5, -0.5}) rows.push_back({second, anchor + side * reach * along, about});
+        break;
+      }
       case dJointTypePiston: {
         hold_to_axis(second, read(joint, dJointGetPistonAnchor), read(joint, dJointGetPistonAxis), reach,
                      rows);
@@ -225,7 +263,14 @@ void find_joint_motors(dxBody* body, double reach, std::vector<JointMotor>& moto
     const dBodyID first = dJointGetBody(joint, 0), other = dJointGetBody(joint, 1);
     if (first && first != body) continue;
     const dBodyID second = first ? other : nullptr;
-    if (const std::optional<Sliding> slides = sliding_of(joint)) {
+    if (dJointGetType(joint) == dJointTypeLMotor) {
+      for (const PushedAxis& axis : pushed_axes(joint))
+        motors.push_back({second, middle_of(body, second), axis.direction, axis.speed, axis.force});
+      continue;
+    }
+    std::optional<Sliding> slides = sliding_of(joint);
+    if (!slides) slides = pr_sliding_of(joint);
+    if (slides) {
       motors.push_back({second, middle_of(body, second), slides->direction,
                         slides->parameter(joint, dParamVel), slides->parameter(joint, dParamFMax)});
       continue;
@@ -250,8 +295,9 @@ bool has_motor(dxJoint* joint) {
             (at > parameter(joint, dParamLoStop) && at < parameter(joint, dParamHiStop)));
   };
   if (!dJointIsEnabled(joint)) return false;
-  if (const std::optional<Sliding> slides = sliding_of(joint))
-    return pushes(slides->parameter, slides->position);
+  if (dJointGetType(joint) == dJointTypeLMotor) return !pushed_axes(joint).empty();
+  for (const std::optional<Sliding>& slides : {sliding_of(joint), pr_sliding_of(joint)})
+    if (slides) return pushes(slides->parameter, slides->position);
   if (dJointGetType(joint) == dJointTypeHinge2)  // on a spring it would drive the wheel too slowly
     return !is_sprung(joint) && dJointGetHinge2Param(joint, dParamFMax2) > 0.0;
   return dJointGetType(joint) == dJointTypeHinge && pushes(dJointGetHingeParam, hinge_angle(joint));

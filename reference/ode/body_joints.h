@@ -35,9 +35,10 @@ struct JointRow {
 
 /// Appends what the joints hold whose first body is `body`, or whose only one: of a ball joint its anchor, of
 /// a hinge two points of its axis, of a fixed joint three points, of a slider all but the way along its axis,
-/// of a piston what a slider holds but for turning about it; a universal joint and a wheel's (hinge 2) count
-/// as ball joints, the latter but for the way along which it is sprung. Others, limits, motors, and joints
-/// that are disabled are left out. Points are `reach` m apart. To be asked outside of a step.
+/// of a piston what a slider holds but for turning about it, of a PR joint but for turning about its second
+/// axis; a universal joint and a wheel's (hinge 2) count as ball joints, the latter but for the way along
+/// which it is sprung. Others, limits, motors, and joints that are disabled are left out. Points are `reach`
+/// m apart. To be asked outside of a step.
 void find_joint_rows(dxBody* body, double reach, std::vector<JointRow>& rows);
 
 /// A motor that drives a point of one body along a direction, against a point of another.
@@ -48,11 +49,11 @@ struct JointMotor {
   double speed = 0.0, force = 0.0;  ///< m/s along it, N at most
 };
 
-/// Appends those of sliders, pistons, hinges and unsprung wheels (hinge 2, which turn them) whose first body
-/// is `body`, or whose only one; a hinge's at a point `reach` m from its axis. Not of those that stand at a
-/// soft stop. To be asked outside of a step.
+/// Appends those of sliders, pistons, PR joints along their first axis, LMotors along each of theirs, hinges
+/// and unsprung wheels (hinge 2, which turn them) whose first body is `body`, or whose only one; a hinge's at
+/// a point `reach` m from its axis. Not of those that stand at a soft stop. To be asked outside of a step.
 void find_joint_motors(dxBody* body, double reach, std::vector<JointMotor>& motors);
-/// Whether find_joint_motors() has the joint's.
+/// Whether find_joint_motors() has the joint's, of a PR joint that along its first axis.
 bool has_motor(dxJoint* joint);
 
 /// Beyond which a point of one body does not go along a direction, against a point of another.

@@ -59,16 +59,39 @@ OdeGroundId Collision::add_box(const Vec3& sides, const Vec3& position, const Qu
     throw InputError(fmt::format(
         "a static box: found sides of {}, {} and {} m and {}, expected positive sides and a pose that is {}",
         sides.x(), sides.y(), sides.z(), describe(state), kSound));
-  const dGeomID box = dCreateBox(nullptr, sides.x(), sides.y(), sides.z());
-  place(box, state);
-  return add_ground({{}, box, material, std::make_shared<const Shape>(box_of_any_size(sides)), state, state});
+  constexpr double kSheet = 1e-3;  // of the longest side: what is thinner may be no solid, which is known now
+  Ground ground{.material = material, .put = state, .state = state};
+  if (sides.minCoeff() < kSheet * sides.maxCoeff())
+    ground.solid = box_of(sides);
+  else
+    ground.sides = sides;
+  ground.geom = dCreateBox(nullptr, sides.x(), sides.y(), sides.z());
+  place(ground.geom, state);
+  return add_ground(std::move(ground));
+}
+
+// Boxes alike share theirs.
+std::shared_ptr<const Shape> Collision::box_of(const Vec3& sides) {
+  std::weak_ptr<const Shape>& known = ground_boxes_[{sides.x(), sides.y(), sides.z()}];
+  std::shared_ptr<const Shape> box = known.lock();
+  if (!box) known = box = std::make_shared<const Shape>(box_of_any_size(sides));
+  return box;
+}
+
+// That of a box is made once something comes near: a level has thousands, and each takes .2 ms.
+const Shape* Collision::solid_of(Ground& ground) {
+  if (ground.sides) ground.solid = box_of(*std::exchange(ground.sides, {}));
+  return ground.solid.get();
 }
 
 OdeGroundId Collision::add_mesh(const Mesh& mesh, MaterialId material) {
   auto data = std::make_unique<TrimeshData>(mesh.vertices, mesh.faces);
   const dGeomID geom = dCreateTriMesh(nullptr, data->id(), nullptr, nullptr, nullptr);
   ++ground_meshes_;
-  return add_ground({{}, geom, material, find_exact_solid("static mesh", mesh), {}, {}, std::move(data)});
+  return add_ground({.geom = geom,
+                     .material = material,
+                     .solid = find_exact_solid("static mesh", mesh),
+                     .mesh = std::move(data)});
 }
 
 OdeGroundId Collision::add_ground(Ground ground) {

@@ -241,8 +241,9 @@ void Collision::drop_beyond(int kept) {
 Pieces Collision::pieces_of_other(const Candidate& candidate, const Body* other) {
   if (other) return pieces_of(*other);
   if (candidate.with_ground()) {
-    const Ground& ground = ground_[candidate.second_number()];
-    return ground.solid ? Pieces{pieces_in_mesh(*ground.solid), ground.state} : Pieces{};
+    Ground& ground = ground_[candidate.second_number()];
+    const Shape* solid = solid_of(ground);
+    return solid ? Pieces{pieces_in_mesh(*solid), ground.state} : Pieces{};
   }
   const Shape* shape = callers_shapes_.find(*callers_, candidate.second_number());
   if (!shape) return {};

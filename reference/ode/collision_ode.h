@@ -3,7 +3,10 @@
 // ground.
 #pragma once
 
+#include <array>
+#include <map>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -22,15 +25,16 @@ struct Ground {
   OdeGroundId id{};  ///< null: removed
   dGeomID geom = nullptr;
   MaterialId material = 0;
-  std::shared_ptr<const Shape> solid = {};  ///< null for a mesh that is none (exact_solid.h)
+  std::shared_ptr<const Shape> solid = {};  ///< null for a mesh that is none (exact_solid.h), and see sides
   RigidState put = {};                      ///< where it was put, and how it moves
   RigidState state = {};                    ///< the same in this substep: where it has moved to from there
   std::unique_ptr<TrimeshData> mesh = {};
-  RigidState before = {};  ///< where it was put at the end of the step before
-  double last_way = 0.0;   ///< m, by which it was moved before that step
-  bool moved = false;      ///< before this step
-  bool goes = false;       ///< was moved before it, or before the step that it is a part of: no belt
-  bool moves = false;      ///< its state has a velocity
+  std::optional<Vec3> sides = {};  ///< m, of a box whose solid is not made yet
+  RigidState before = {};          ///< where it was put at the end of the step before
+  double last_way = 0.0;           ///< m, by which it was moved before that step
+  bool moved = false;              ///< before this step
+  bool goes = false;               ///< was moved before it, or before the step that it is a part of: no belt
+  bool moves = false;              ///< its state has a velocity
 
   double way() const;  ///< m, by which it was moved before this step, no point of it more
 };
@@ -85,6 +89,8 @@ class Collision {
   void drop_beyond(int kept);
   OdeGroundId add_ground(Ground ground);
   Ground& find_ground(OdeGroundId id);
+  std::shared_ptr<const Shape> box_of(const Vec3& sides);
+  const Shape* solid_of(Ground& ground);
   ContactSide side_of(const Candidate& candidate, const Body* other) const;
 
   OdeSettings settings_;
@@ -99,7 +105,8 @@ class Collision {
   std::unordered_map<std::uint32_t, std::size_t> number_of_;  // of ground, by OdeGroundId::value
   std::uint32_t last_ground_id_ = 0;
   std::int64_t ground_meshes_ = 0;
-  std::vector<ContactPoint> points_;  // of the pair at hand
+  std::map<std::array<double, 3>, std::weak_ptr<const Shape>> ground_boxes_;  // by their sides
+  std::vector<ContactPoint> points_;                                          // of the pair at hand
   enum class Waking : char { no, to_meet, met };
   std::vector<Waking> waking_;      // by slot: sleepers that touch one that is awake, in this substep
   std::vector<std::size_t> woken_;  // their slots

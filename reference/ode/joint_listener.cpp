@@ -45,6 +45,18 @@ JointForce free_part_of(dJointID joint, const JointForce& all, const Vec3& posit
       const Vec3 axis = read_vector(joint, dJointGetHingeAxis);
       return {.torque = axis.dot(about(read_vector(joint, dJointGetHingeAnchor))) * axis};
     }
+    case dJointTypeLMotor:
+      return has_motor(joint) ? JointForce{} : all;
+    case dJointTypePR: {
+      if (!dJointGetBody(joint, 0)) return all;
+      const Vec3 along_axis = read_vector(joint, dJointGetPRAxis1),
+                 turning_axis = read_vector(joint, dJointGetPRAxis2),
+                 anchor = read_vector(joint, dJointGetPRAnchor),
+                 turning = turning_axis.dot(about(anchor)) * turning_axis;
+      if (has_motor(joint)) return {.torque = turning};
+      const Vec3 along = along_axis.dot(all.force) * along_axis;
+      return {.force = along, .torque = turning + (anchor - position).cross(along)};
+    }
     case dJointTypeBall:
       return {.torque = about(read_vector(joint, dJointGetBallAnchor))};
     case dJointTypeUniversal:

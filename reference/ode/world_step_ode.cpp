@@ -97,7 +97,7 @@ void OdeWorld::Impl::end_step() {
     body.force = body.torque = Vec3::Zero(), body.kept_awake = false;
     if (body.is_awake())
       body.held_force = body.held_torque = Vec3::Zero();
-    else if (is_held(body))
+    else if (body.body)  // ODE would keep it, and add the next step's
       set_force(body.body, Vec3::Zero(), Vec3::Zero());
   }
   collision.end_step();

@@ -1,6 +1,7 @@
 // Forces that go on, on bodies that touch something: they act through the step, and what they press together
 // does not strike.
 #include <gtest/gtest.h>
+#include <ode/ode.h>
 
 #include <algorithm>
 #include <functional>
@@ -317,6 +318,25 @@ TEST(Forces, ABoardAtTablesTakesItsLoadAlong) {
 }
 
 // A row and a stack, pushed by the first for two seconds: nothing holds them, however weak that is.
+// A force that ODE itself is given in each frame, on a full body that falls asleep meanwhile and wakes again.
+TEST(Forces, WhatIsGivenThroughODEIsGivenOnce) {
+  for (const Vec3& push : {Vec3(0.4, 0, 0), Vec3(0, 0, 0.7)}) {  // over the weight
+    Manager manager({.signatures = coarse_signature});
+    manager.materials().replace(0, {.restitution = 0.0, .friction = 0.5});
+    manager.add_plane(Vec3::UnitZ(), 0.0);
+    const BodyId cube = add(manager, box_shape({kCubeSide, kCubeSide, kCubeSide}),
+                            testing::at({0, 0, 0.5 * kCubeSide}), LevelChoice::full);
+    const Vec3 force = manager.mass(cube) * kG * push;
+    double fastest = 0.0;  // m/s
+    for (int frame = 0; frame < 5 * 60; ++frame) {
+      dBodyAddForce(manager.ode_body(cube), force.x(), force.y(), force.z());
+      manager.step(kFrame);
+      fastest = std::max(fastest, manager.state(cube).velocity.norm());
+    }
+    EXPECT_LT(fastest, 0.01) << push.transpose();
+  }
+}
+
 TEST(Forces, AWeakPushOnIceMovesAllThatTouch) {
   constexpr int kCubes = 3;
   for (const LevelChoice level : kPushedRungs)

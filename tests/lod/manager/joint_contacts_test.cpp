@@ -240,6 +240,47 @@ TEST(JointContacts, ALiftOnAMotorCarriesAStack) {
     }
 }
 
+/// Holds a body in its place and its attitude, by motors of 3 kN along three axes and about them.
+dJointID hold_by_motors(const TheirWorld& theirs, dBodyID body) {
+  const dJointID turning = dJointCreateAMotor(theirs.world, nullptr),
+                 linear = dJointCreateLMotor(theirs.world, nullptr);
+  for (const dJointID joint : {turning, linear}) dJointAttach(joint, body, nullptr);
+  dJointSetAMotorNumAxes(turning, 3), dJointSetLMotorNumAxes(linear, 3);
+  for (int axis = 0; axis < 3; ++axis) {
+    dJointSetAMotorAxis(turning, axis, 0, axis == 0, axis == 1, axis == 2);
+    dJointSetLMotorAxis(linear, axis, 0, axis == 0, axis == 1, axis == 2);
+    dJointSetAMotorParam(turning, dParamFMax + axis * dParamGroup2, 3000.0);
+    dJointSetLMotorParam(linear, dParamFMax + axis * dParamGroup2, 3000.0);
+  }
+  return linear;
+}
+
+// What such motors held was taken for a force of the caller's, which lags: the lift fell under what fell onto
+// it, by up to .8 m.
+TEST(JointContacts, ALiftOnAnLMotorBearsWhatFallsOntoIt) {
+  for (const LevelChoice level : {LevelChoice::support, LevelChoice::tables}) {
+    TheirWorld theirs;
+    Manager manager(theirs.world, theirs.space, kSettings);
+    const dBodyID lift = theirs.add_box(0.6, 29.0, {0, 0, 1.0});
+    const dJointID motor = hold_by_motors(theirs, lift);
+    std::vector<BodyId> stack;
+    for (int i = 0; i < 2; ++i)
+      stack.push_back(manager.add_body({.shape = box_shape({kCrate, kCrate, kCrate}),
+                                        .state = testing::at({0.05, 0, 1.35 + kCrate * (i + 0.5)}),
+                                        .mass = 12.0,
+                                        .level = level}));
+    run(manager, 3.0);
+    EXPECT_NEAR(dBodyGetPosition(lift)[2], 1.0, 0.01) << int(level);
+    dJointSetLMotorParam(motor, dParamVel3, 0.1);
+    run(manager, 3.0);
+    EXPECT_NEAR(dBodyGetPosition(lift)[2], 1.3, 0.02) << int(level);
+    for (std::size_t i = 0; i < stack.size(); ++i)
+      EXPECT_NEAR(manager.state(stack[i]).position.z() - dBodyGetPosition(lift)[2],
+                  0.3 + kCrate * (double(i) + 0.5), 0.02)
+          << int(level);
+  }
+}
+
 // Of 1.5 m, full, 2 m up; it has its ODE body.
 BodyId add_plate(Manager& manager) {
   const BodyId plate = manager.add_body({.shape = box_shape({1.5, 1.5, 0.1}),

@@ -162,7 +162,6 @@ TEST(LeftPlaces, ATowerFallsWhereABodyOfTheCallersGoes) {
     }
 }
 
-// Nothing else wakes: a crate that is moved by a hair, and the crates that stand by themselves.
 // One that is pushed on never sleeps, and is too slow to wake what fell asleep on it, which hung in the air
 // once it had gone.
 TEST(LeftPlaces, WhatSleepsOnOneThatCreepsAwayComesDown) {
@@ -185,6 +184,56 @@ TEST(LeftPlaces, WhatSleepsOnOneThatCreepsAwayComesDown) {
   }
 }
 
+/// A slab of the caller's or, at the full level, of the manager's, 2 m wide, which a motor of his lowers.
+struct SlabOnMotor {
+  dBodyID body = nullptr;
+  dJointID motor = nullptr;
+  void hold(dWorldID world, dBodyID slab) {
+    body = slab;
+    motor = dJointCreateSlider(world, nullptr);
+    dJointAttach(motor, slab, nullptr);
+    dJointSetSliderAxis(motor, 0, 0, 1);
+    dJointSetSliderParam(motor, dParamFMax, 1e5);
+  }
+  double top() const { return dBodyGetPosition(body)[2] + 0.1; }
+};
+
+// However slowly.
+TEST(LeftPlaces, WhatSleepsOnASlabThatIsLoweredGoesDownWithIt) {
+  for (const LevelChoice level : kRungs)
+    for (const bool is_callers : {true, false})
+      for (const double speed : {0.02, 0.1, 0.3}) {  // m/s
+        const DeepWorld his_world;
+        Manager manager(his_world.world, his_world.space, settings());
+        SlabOnMotor slab;
+        if (is_callers) {
+          const dBodyID his = dBodyCreate(his_world.world);
+          dMass mass;
+          dMassSetBoxTotal(&mass, 500.0, 2, 2, 0.2);
+          dBodySetMass(his, &mass);
+          dGeomSetBody(dCreateBox(his_world.space, 2, 2, 0.2), his);
+          slab.hold(his_world.world, his);
+        } else {
+          slab.hold(his_world.world, manager.ode_body(add(manager, box_shape({2, 2, 0.2}),
+                                                          testing::at({0, 0, 0}), LevelChoice::full)));
+        }
+        const std::vector<BodyId> tower{
+            add(manager, cube(), testing::at({0.2, 0, 0.1 + 0.5 * kSide}), level),
+            add(manager, cube(), testing::at({0.2, 0, 0.1 + 1.5 * kSide}), level)};
+        run(manager, 4.0);
+        dJointSetSliderParam(slab.motor, dParamVel, -speed);
+        double gap = 0.0;  // m
+        for (int frame = 0; frame < 180; ++frame) {
+          manager.step(kFrame);
+          gap = std::max(gap, manager.state(tower[0]).position.z() - 0.5 * kSide - slab.top());
+        }
+        EXPECT_LT(slab.top(), 0.1 - 2.8 * speed);
+        EXPECT_LT(gap, 0.1 * kSide + 2.0 * kFrame * speed)
+            << int(level) << " at " << speed << " m/s, caller's: " << is_callers;
+      }
+}
+
+// What moves by a hair wakes nobody, and who stands by himself sleeps on.
 TEST(LeftPlaces, WhoStandsFarOffSleepsOn) {
   Manager manager = on_floor(settings());
   const std::vector<BodyId> tower = sleeping_tower(manager, LevelChoice::support, 0.0);

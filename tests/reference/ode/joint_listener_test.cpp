@@ -31,16 +31,25 @@ class JointListeners : public ::testing::Test {
   JointListener listener_;
 };
 
-TEST_F(JointListeners, HearALinearMotorThatHoldsAWeight) {
+TEST_F(JointListeners, HearWhatHoldsABodyToAPlane) {
+  const dBodyID body = add({0, 0, 0});
+  const dJointID joint = dJointCreatePlane2D(dBodyGetWorld(body), nullptr);
+  dJointAttach(joint, body, nullptr);
+  const JointForce force = hear(body);
+  EXPECT_NEAR(force.force.z(), kWeight, 1e-3 * kWeight);
+  EXPECT_LT(force.torque.norm(), 1e-6);
+  EXPECT_EQ(dJointGetFeedback(joint), nullptr);
+}
+
+// Its motor is find_joint_motors()'s.
+TEST_F(JointListeners, DoNotHearALinearMotor) {
   const dBodyID body = add({0, 0, 1});
   const dJointID motor = dJointCreateLMotor(dBodyGetWorld(body), nullptr);
   dJointAttach(motor, body, nullptr);
   dJointSetLMotorNumAxes(motor, 1), dJointSetLMotorAxis(motor, 0, 0, 0, 0, 1);
   dJointSetLMotorParam(motor, dParamVel, 0.0), dJointSetLMotorParam(motor, dParamFMax, 1e3);
   const JointForce force = hear(body);
-  EXPECT_NEAR(force.force.z(), kWeight, 1e-3 * kWeight);
-  EXPECT_LT(force.torque.norm(), 1e-6);
-  EXPECT_EQ(dJointGetFeedback(motor), nullptr);
+  EXPECT_LT(force.force.norm() + force.torque.norm(), 1e-9);
 }
 
 // Its motor is find_joint_motors()'s; about its axis it is free.
