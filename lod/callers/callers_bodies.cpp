@@ -266,15 +266,22 @@ void CallersBodies::archive(StateArchive& a, const SpaceMirror* mirror) {
   note_places();
 }
 
-void CallersBodies::each_near(
-    const Vec3& center, double radius, const BodyProperties& own,
-    const std::function<void(std::uint32_t, const Shape&, const RigidState&)>& visit) const {
+std::vector<CallersBodies::Placed> CallersBodies::find_placed() const {
+  std::vector<Placed> placed;
+  for (const Entry& entry : bodies_)
+    if (entry.shape)
+      placed.push_back({entry.owner, entry.bits, entry.shape.get(), callers::state(entry.body)});
+  return placed;
+}
+
+void CallersBodies::each_near(const Vec3& center, double radius, const BodyProperties& own,
+                              const std::function<void(const Shape&, const RigidState&)>& visit) const {
   for (const Entry& entry : bodies_) {
     if (!entry.shape || !may_meet(own.category, own.collide, entry.bits.category, entry.bits.collide))
       continue;
     const RigidState state = callers::state(entry.body);
     const double reach = radius + entry.shape->radius;
-    if ((state.position - center).squaredNorm() < reach * reach) visit(entry.owner, *entry.shape, state);
+    if ((state.position - center).squaredNorm() < reach * reach) visit(*entry.shape, state);
   }
 }
 

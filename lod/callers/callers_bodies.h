@@ -56,10 +56,18 @@ class CallersBodies {
   /// what numbers their contacts are remembered: of those that the reader has in the same places, and of
   /// others in their order; not of those without geoms.
   void archive(StateArchive& a, const SpaceMirror* mirror);
-  /// Calls visit(owner, shape, state) for each whose ball meets that of `radius` m about `center`, and whose
-  /// bits meet `own`.
+  /// Calls visit(shape, state) for each whose ball meets that of `radius` m about `center`, and whose bits
+  /// meet `own`.
   void each_near(const Vec3& center, double radius, const BodyProperties& own,
-                 const std::function<void(std::uint32_t, const Shape&, const RigidState&)>& visit) const;
+                 const std::function<void(const Shape&, const RigidState&)>& visit) const;
+  struct Placed {
+    std::uint32_t owner = 0;
+    GroundBits bits;
+    const Shape* shape = nullptr;
+    RigidState state;
+  };
+  /// Those that have shapes, as they are now.
+  std::vector<Placed> find_placed() const;
   /// Their geoms as they are now, at any time; of those that the mirror saw in its last refresh.
   std::vector<CallersPart> find_parts(const SpaceMirror& mirror) const;
   /// Whose geom the mirror has in that slot; null where it is none of a dynamic body.

@@ -94,8 +94,8 @@ void LeftPlaces::watch_who_bears(const Levels& levels, std::span<const BodyId> s
   }
 }
 
-// On a full body that woke, if it is larger than these: as soon as it has left by its own measure, others are
-// woken in any case.
+// On a full body that woke, if it is larger than these: by its own measure, a tenth of its radius, it would
+// be far from under them.
 void LeftPlaces::watch_sleepers_on(const Levels& levels, BodyId bearer) {
   constexpr double kLarger = 1.5;
   if (levels.bodies[bearer.index].statistical) return;
@@ -112,23 +112,28 @@ void LeftPlaces::watch_sleepers_on(const Levels& levels, BodyId bearer) {
 
 // Bodies of the caller's, whether ODE has them asleep or not: he may put them elsewhere at any time.
 void LeftPlaces::watch_callers(const Levels& levels) {
-  if (levels.callers.bodies.size() > 0)
-    for (const BodyId sleeper : laid_) {
-      if (!levels.bodies.valid(sleeper) || !levels.asleep(sleeper.index)) continue;
-      const Shape& shape = *levels.bodies.shape(sleeper.index);
-      const RigidState state = levels.state(sleeper.index);
-      const double touching = kBearing * shape.radius;
-      levels.callers.bodies.each_near(
-          state.position, (1.0 + kBearing) * shape.radius, levels.bodies.properties(sleeper.index),
-          [&](std::uint32_t owner, const Shape& other, const RigidState& there) {
-            HullGap gap{.normal = Vec3::Zero()};
-            if (!are_apart(PlacedHull(shape, state.position, state.orientation),
-                           PlacedHull(other, there.position, there.orientation), Enough(touching), gap) ||
-                gap.gap <= touching)
-              watch(levels, sleeper, there, {}, owner);
-          });
-    }
+  if (levels.callers.bodies.size() == 0) laid_.clear();
+  if (laid_.empty()) return;
+  NearFull near;
+  for (const BodyId sleeper : laid_)
+    if (levels.bodies.valid(sleeper) && levels.asleep(sleeper.index))
+      near.add(sleeper.index, place_of(levels, sleeper.index),
+               (1.0 + kBearing) * levels.bodies.shape(sleeper.index)->radius);
   laid_.clear();
+  for (const CallersBodies::Placed& bearer : levels.callers.bodies.find_placed()) {
+    const PlacedHull hull(*bearer.shape, bearer.state.position, bearer.state.orientation);
+    near.find(bearer.state.position, bearer.shape->radius, [&](std::uint32_t sleeper) {
+      const BodyProperties& own = levels.bodies.properties(sleeper);
+      if (!may_meet(own.category, own.collide, bearer.bits.category, bearer.bits.collide)) return;
+      const Shape& shape = *levels.bodies.shape(sleeper);
+      const RigidState state = levels.state(sleeper);
+      const double touching = kBearing * shape.radius;
+      HullGap gap{.normal = Vec3::Zero()};
+      if (!are_apart(PlacedHull(shape, state.position, state.orientation), hull, Enough(touching), gap) ||
+          gap.gap <= touching)
+        watch(levels, levels.bodies.id(sleeper), bearer.state, {}, bearer.owner);
+    });
+  }
 }
 
 // One that is pushed, or that creeps, may be kept awake while another sleeps on it, or leans on it if it is

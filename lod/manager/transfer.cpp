@@ -204,8 +204,7 @@ bool overlaps(const Levels& levels, std::uint32_t body, std::span<const std::uin
     return true;
   bool meets_callers = false;
   levels.callers.bodies.each_near(
-      state.position, shape.radius, own,
-      [&](std::uint32_t, const Shape& other, const RigidState& there) {
+      state.position, shape.radius, own, [&](const Shape& other, const RigidState& there) {
         const double allowed = kOverlapAllowed * std::min(shape.radius, other.radius);
         meets_callers |= measure_pair_overlap(shape, state, other, there, allowed) > allowed;
       });

@@ -216,7 +216,7 @@ TEST_F(BodiesOfCaller, NearAreThoseWhoseBallsMeet) {
   follow();
   for (const auto& [radius, expected] : {std::pair(0.5, 0), {0.66, 1}, {3.66, 2}}) {
     int met = 0;
-    callers_.each_near({-1, 0, 0}, radius, {}, [&](auto, auto&, auto&) { ++met; });
+    callers_.each_near({-1, 0, 0}, radius, {}, [&](const Shape&, const RigidState&) { ++met; });
     EXPECT_EQ(met, expected) << radius;
   }
 }
