@@ -195,8 +195,7 @@ bool NearSearch::meet(std::uint32_t a, std::uint32_t b) const {
   return dx * dx + dy * dy + dz * dz < limit * limit;
 }
 
-// Of two hulls. (Whoever is driven off such a way looks around him
-// anew, NearBodies::find_driven.)
+// Of two hulls. (Whoever is driven off his way looks around him anew, NearBodies::find_driven.)
 bool NearSearch::pass(std::uint32_t a, std::uint32_t b) const {
   const auto way_of = [&](std::uint32_t ball) {
     return Ball{Vec3(x_[ball], y_[ball], z_[ball]), reach_[ball], half_way_[ball - spheres_]}.way();
