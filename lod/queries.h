@@ -58,7 +58,7 @@ struct BoxVolume {
 struct QueryHit {
   ContactSide who;
   /// World: on the surface that is met. When a box overlaps anything but a plane: the position of what it
-  /// overlaps.
+  /// overlaps, of ground that is met triangle by triangle a point of one of these.
   Vec3 point = Vec3::Zero();
   /// Unit, outward from that surface. When a box overlaps anything but a plane it is not known: z.
   Vec3 normal = Vec3::UnitZ();

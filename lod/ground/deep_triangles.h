@@ -28,6 +28,20 @@ class DeepTriangles {
   /// Appends `first` and the number of each that is solid within `reach` m of `center`, in no order. By
   /// floats: some are a little farther.
   void find_near(const Vec3& center, double reach, int first, std::vector<int>& found) const;
+  /// Of a surface that looks one way: the numbers of those that stand, without what lies below them, in boxes
+  /// (AlignedBox3d, m) which `enters`.
+  template <class Enters, class Visit>
+  void visit_bare(const Enters& enters, const Visit& visit) const {
+    const double rounding =
+        1e-12 * (middle_.cwiseAbs() + bounds_.sizes()).sum();  // of moving a box by middle_
+    tree_.visit_places(
+        [&](const FloatBox& small) {
+          const Eigen::AlignedBox3d box = small;
+          return enters(Eigen::AlignedBox3d(box.min() + middle_ - Vec3::Constant(rounding),
+                                            box.max() + middle_ + Vec3::Constant(rounding)));
+        },
+        [&](std::int32_t place) { visit(tree_.number_at(place)); });
+  }
 
  private:
   using Floats = std::array<float, 3>;

@@ -117,19 +117,10 @@ void Ground::take_bounds(std::int32_t part) {
   const Box box = placed(held.shape.bounds, held.pose);
   const Vec3 way = Vec3::Constant(held.greatest_speed() * held.pose.goes_on_s);
   bounds_[std::size_t(part)] = {box.min() - way, box.max() + way};
-  if (bounds_of_parts_) bounds_of_parts_->extend(bounds_[std::size_t(part)]);
-}
-
-void Ground::forget_bounds(std::int32_t part) {
-  const Box& box = bounds_[std::size_t(part)];
-  if (bounds_of_parts_ && ((box.min().array() <= bounds_of_parts_->min().array()).any() ||
-                           (box.max().array() >= bounds_of_parts_->max().array()).any()))
-    bounds_of_parts_.reset();
 }
 
 // From the tree it goes when that is next built: until then it is passed over there.
 void Ground::let_go(std::int32_t part) {
-  forget_bounds(part);
   if (in_tree_[std::size_t(part)])
     in_tree_[std::size_t(part)] = false;
   else
@@ -138,7 +129,6 @@ void Ground::let_go(std::int32_t part) {
 
 // Where it is now. One that is loose already stays so.
 void Ground::hold_anew(std::int32_t part) {
-  forget_bounds(part);
   take_bounds(part);
   if (std::exchange(in_tree_[std::size_t(part)], false)) loose_.push_back(part);
 }
@@ -158,25 +148,18 @@ void Ground::prepare_tree() const {
   tree_ = BoxHierarchy(boxes);
 }
 
-Eigen::AlignedBox3d Ground::bounds_of_parts() const {
-  if (bounds_of_parts_) return *bounds_of_parts_;
-  Box all;
-  for (std::size_t i = 0; i < parts_.size(); ++i)
-    if (parts_[i]) all.extend(bounds_[i]);
-  bounds_of_parts_ = all;
-  return all;
-}
-
-void Ground::find_parts(const Vec3& center, double reach, std::vector<const GroundPart*>& found) const {
+// In boxes that `meets`, those that stand in the tree and those that are loose.
+template <class Meets>
+void Ground::find_parts_in(const Meets& meets, std::vector<const GroundPart*>& found) const {
   if (parts_used_ == 0) return;
   if (!made_only_) prepare_tree();
   thread_local std::vector<int> near;
   near.clear();
   const auto add = [&](int i) {
-    if (bounds_[std::size_t(i)].squaredExteriorDistance(center) <= reach * reach) near.push_back(i);
+    if (meets(bounds_[std::size_t(i)])) near.push_back(i);
   };
-  tree_.visit_near(center, reach, [&](std::int32_t place) {
-    const std::int32_t i = standing_[std::size_t(place)];
+  tree_.visit_places(meets, [&](std::int32_t place) {
+    const std::int32_t i = standing_[std::size_t(tree_.number_at(place))];
     if (in_tree_[std::size_t(i)]) add(i);
   });
   for (const std::int32_t i : loose_) add(i);
@@ -190,6 +173,15 @@ void Ground::find_parts(const Vec3& center, double reach, std::vector<const Grou
     if (part.shape.probe && without_rays_) continue;
     found.push_back(&part);
   }
+}
+
+void Ground::find_parts(const Vec3& center, double reach, std::vector<const GroundPart*>& found) const {
+  find_parts_in([&](const Box& box) { return box.squaredExteriorDistance(center) <= reach * reach; }, found);
+}
+
+void Ground::find_parts_along(const Vec3& from, const Vec3& direction, double length, double margin,
+                              std::vector<const GroundPart*>& found) const {
+  find_parts_in([&](const Box& box) { return enters_box(box, margin, from, direction, length); }, found);
 }
 
 bool Ground::make_near(const Vec3& center, double reach) const {

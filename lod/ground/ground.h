@@ -152,11 +152,12 @@ class Ground {
   void archive(StateArchive& a);
   bool has_parts() const { return parts_used_ > 0; }
   bool any_moves() const { return moving_ > 0; }
-  /// Of all parts, m, world. Not for several threads at once, as it keeps what it found.
-  Eigen::AlignedBox3d bounds_of_parts() const;
   /// Appends the parts whose bounding boxes come within `reach` of `center`, in the order of their making.
   /// Not for several threads at once, as it makes solids, but where MadeOnly is.
   void find_parts(const Vec3& center, double reach, std::vector<const GroundPart*>& found) const;
+  /// The same of those whose boxes come within `margin` m of a ray of unit `direction` before `length` m.
+  void find_parts_along(const Vec3& from, const Vec3& direction, double length, double margin,
+                        std::vector<const GroundPart*>& found) const;
   /// Makes the solids of those parts. Returns whether any is known by rays, which only one thread may cast.
   bool make_near(const Vec3& center, double reach) const;
   /// While it exists several threads may call find_parts, which passes over parts whose solids are not made
@@ -196,8 +197,9 @@ class Ground {
   void hold(std::int32_t part);
   void let_go(std::int32_t part);
   void hold_anew(std::int32_t part);
+  template <class Meets>
+  void find_parts_in(const Meets& meets, std::vector<const GroundPart*>& found) const;
   void take_bounds(std::int32_t part);
-  void forget_bounds(std::int32_t part);
   void prepare_tree() const;
   const GroundSolids& solids_of(std::int32_t part) const;
 
@@ -224,7 +226,6 @@ class Ground {
   mutable std::vector<std::int32_t> standing_;  // which parts
   mutable std::vector<char> in_tree_;           // of each part
   mutable std::vector<std::int32_t> loose_;
-  mutable std::optional<Eigen::AlignedBox3d> bounds_of_parts_;  // none since a part at their border left
 };
 
 }  // namespace lodestone

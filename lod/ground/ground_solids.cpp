@@ -91,11 +91,15 @@ void GroundSolids::prepare() {
   if (!tree_) tree_ = std::make_shared<const BoxHierarchy>(bounds_);
 }
 
-void GroundSolids::find_near(const Vec3& center, double reach, std::vector<int>& found) const {
+void GroundSolids::find_bodies_near(const Vec3& center, double reach, std::vector<int>& found) const {
   const auto add = [&](int i) {
     if (bounds_[std::size_t(i)].squaredExteriorDistance(center) <= reach * reach) found.push_back(i);
   };
   if (tree_) tree_->visit_near(center, reach, add);
+}
+
+void GroundSolids::find_near(const Vec3& center, double reach, std::vector<int>& found) const {
+  find_bodies_near(center, reach, found);
   if (surface_) surface_->find_near(center, reach, int(solids_.size()), found);
 }
 

@@ -33,6 +33,17 @@ class GroundSolids {
   /// Appends the indices of the solids that may come within `reach` of `center`, both in the part's frame: by
   /// their bounding boxes, of a surface as DeepTriangles finds them.
   void find_near(const Vec3& center, double reach, std::vector<int>& found) const;
+  /// Those that are not triangles of a surface, found by their bounding boxes.
+  std::span<const GroundSolid> bodies() const { return solids_; }
+  void find_bodies_near(const Vec3& center, double reach, std::vector<int>& found) const;
+  /// The indices of those whose boxes come within `margin` of a ray before `length`, in the part's frame, m.
+  template <class Visit>
+  void visit_bodies_along(const Vec3& from, const Vec3& direction, const double& length, double margin,
+                          const Visit& visit) const {
+    if (tree_) tree_->visit_along(from, direction, length, margin, visit);
+  }
+  /// Null: it has none.
+  const SurfaceSolids* surface() const { return surface_.get(); }
 
  private:
   void add(GroundSolid solid, const Eigen::AlignedBox3d& bounds);

@@ -123,7 +123,7 @@ std::array<Vec3, 3> SurfaceSolids::corners_of(const Triangle& triangle) const {
 // Where a ray crosses the surface, in no order: how far along it, m, and whether it goes in there.
 template <class Visit>
 void SurfaceSolids::visit_crossings(const Vec3& from, const Vec3& direction, const Visit& visit) const {
-  tree_.visit_along(from, direction, size_, [&](int i) {
+  tree_.visit_along(from, direction, size_, 0.0, [&](int i) {
     const std::array<Vec3, 3> corner = corners_of(triangles_[std::size_t(i)]);
     if (const auto in = meet_front(corner, from, direction, size_))
       visit(*in, true);

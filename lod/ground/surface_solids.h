@@ -32,6 +32,13 @@ class SurfaceSolids {
   void find_near(const Vec3& center, double reach, int first, std::vector<int>& found) const {
     deep_.find_near(center, reach, first, found);
   }
+  /// The corners of those triangles that stand in boxes (AlignedBox3d) which `enters`: some may be beside it.
+  template <class Enters, class Visit>
+  void visit_triangles(const Enters& enters, const Visit& visit) const {
+    const auto visit_one = [&](int i) { visit(corners_of(triangles_[std::size_t(i)])); };
+    if (tree_.empty()) return deep_.visit_bare(enters, visit_one);
+    tree_.visit_places(enters, [&](std::int32_t place) { visit_one(tree_.number_at(place)); });
+  }
   /// For any thread at any time; stays where it is.
   const GroundSolid& operator[](std::size_t i) const;
   /// How many of them something has come near.

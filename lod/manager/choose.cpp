@@ -129,10 +129,32 @@ void Choose::look_at_nearest(StepReport& report) {
     // Some more each time: what is known is ranked anew.
     while (candidates_.size() < known + known / 4 + 16 && far_.next_due() < 1e299) {
       next.clear();
-      far_.take_next(next);
-      for (const std::uint32_t body : next) look_at(body, report);
+      const double due_before = far_.take_next(next);
+      for (const std::uint32_t body : next)
+        if (const double due = due_asleep(body); due < due_before)
+          look_at(body, report);
+        else
+          far_.put(body, due);
     }
   }
+}
+
+// m of travel, as of put_far(), from where the viewpoints are now: after they have jumped, most of those that
+// seem to be due are far again. At once for all but single sleepers.
+double Choose::due_asleep(std::uint32_t body) const {
+  const BodyTable& bodies = levels_.bodies;
+  const bool sleeps =
+      bodies.alive(body) && bodies[body].statistical && levels_.statistical->asleep(bodies[body].statistical);
+  if (!sleeps || groups_.of(body)) return -1e300;
+  const double nearest = distance_to_views(levels_.state(body).position);
+  return traveled_ + nearest - bodies.shape(body)->radius - kEarly * (1.0 + nearest);
+}
+
+double Choose::distance_to_views(const Vec3& position) const {
+  double nearest = 1e300;
+  for (std::size_t view = 0; view < views_.size(); ++view)
+    nearest = std::min(nearest, (position - views_.position(view)).norm());
+  return nearest;
 }
 
 // Asks the policy about a body, unless its answer is known.
@@ -282,9 +304,7 @@ void Choose::count(Rung rung, Activity does, bool arriving, float mesh, double b
 void Choose::put_far(std::uint32_t body, const LevelCandidate& candidate) {
   const BodyRecord& record = levels_.bodies[body];
   if (views_.empty() || !record.statistical || !levels_.statistical->asleep(record.statistical)) return;
-  double nearest = 1e300;
-  for (std::size_t view = 0; view < views_.size(); ++view)
-    nearest = std::min(nearest, (candidate.position - views_.position(view)).norm());
+  const double nearest = distance_to_views(candidate.position);
   double travel = limits_ ? travel_until_change(candidate, views_, *limits_, policy_.hysteresis)
                           : nearest - candidate.radius;
   if (limits_ && policy_.out_of_view_factor > 1.0) {

@@ -110,6 +110,8 @@ class Choose {
   void look_at_those_concerned(StepReport& report);
   void look_at(std::uint32_t body, StepReport& report);
   void look_at_nearest(StepReport& report);
+  double due_asleep(std::uint32_t body) const;
+  double distance_to_views(const Vec3& position) const;
   void ask_for_signature(std::uint32_t body, const BodyLevel& level);
   Circumstances find_circumstances(std::uint32_t body, const BodyLevel& level);
   void count_present(const BodyLevel& level, const Circumstances& is);

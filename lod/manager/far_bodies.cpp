@@ -24,8 +24,8 @@ void FarBodies::forget(std::uint32_t body) {
 
 void FarBodies::clear() { *this = {}; }
 
-void FarBodies::take_next(std::vector<std::uint32_t>& bodies) {
-  if (places_.empty()) return;
+double FarBodies::take_next(std::vector<std::uint32_t>& bodies) {
+  if (places_.empty()) return 1e300;
   const auto node = places_.extract(places_.begin());
   entries_ -= node.mapped().size();
   for (const std::uint32_t body : node.mapped())
@@ -33,6 +33,7 @@ void FarBodies::take_next(std::vector<std::uint32_t>& bodies) {
       forget(body);
       bodies.push_back(body);
     }
+  return (node.key() + 1) * kWidth;
 }
 
 void FarBodies::drop_stale() {

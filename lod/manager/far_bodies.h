@@ -21,8 +21,9 @@ class FarBodies {
 
   /// m: no body is due before.
   double next_due() const { return places_.empty() ? 1e300 : places_.begin()->first * kWidth; }
-  /// Moves those that are due first, about a quarter of a metre's worth, to the end of `bodies`.
-  void take_next(std::vector<std::uint32_t>& bodies);
+  /// Moves those that are due first, about a quarter of a metre's worth, to the end of `bodies`. Returns what
+  /// they were due before.
+  double take_next(std::vector<std::uint32_t>& bodies);
 
  private:
   static constexpr double kWidth = 0.25;  // m

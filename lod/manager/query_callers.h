@@ -19,10 +19,7 @@ class QueryCallers {
                const Found& found);
 
  private:
-  PosedSurface surface_of(const CallersPart& part, const GroundSolid& solid);
-  std::optional<SurfaceHit> meet(const CallersPart& part, const Sweep& sweep);
-
-  ShapeTrees trees_;
+  SolidQueries solids_;
 };
 
 }  // namespace lodestone

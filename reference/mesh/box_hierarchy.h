@@ -54,10 +54,12 @@ class BoxHierarchy {
     visit_places([&](const Box& box) { return box.squaredExteriorDistance(center) <= reach * reach; },
                  [&](std::int32_t place) { visited(number_at(place)); });
   }
-  /// Of those that a ray of unit `direction` enters within `length` m.
+  /// Of those within `margin` m of which a ray of unit `direction` comes before `length` m, which may become
+  /// less meanwhile.
   template <class Visit>
-  void visit_along(const Vec3& from, const Vec3& direction, double length, const Visit& visited) const {
-    visit_places([&](const Box& box) { return enters_box(box, 0.0, from, direction, length); },
+  void visit_along(const Vec3& from, const Vec3& direction, const double& length, double margin,
+                   const Visit& visited) const {
+    visit_places([&](const Box& box) { return enters_box(box, margin, from, direction, length); },
                  [&](std::int32_t place) { visited(number_at(place)); });
   }
 

@@ -55,11 +55,12 @@ Mesh terrain(int n, const std::function<double(double, double)>& height) {
   return mesh;
 }
 
-// As parts come, move and go, at the border of all and within it.
-TEST(Ground, ItsBoundsAreThoseOfItsParts) {
+// As parts come, move and go: those near a ray are those whose boxes it comes near.
+TEST(Ground, PartsAlongARayAreFoundWhereTheyAre) {
   Ground ground;
   RandomStream random(12, 0, 0);
   std::vector<GroundId> there;
+  std::size_t met = 0;
   for (int i = 0; i < 400; ++i) {
     const Vec3 place = random.uniform(0, 20) * random.direction();
     const auto any = std::size_t(random.uniform() * double(there.size()));
@@ -71,12 +72,18 @@ TEST(Ground, ItsBoundsAreThoseOfItsParts) {
       ground.remove(there[any]);
       there.erase(there.begin() + std::ptrdiff_t(any));
     }
-    Eigen::AlignedBox3d all;
-    for (const GroundId id : there) all.extend(ground.bounds(id));
-    if (there.empty()) continue;
-    ASSERT_EQ(ground.bounds_of_parts().min(), all.min());
-    ASSERT_EQ(ground.bounds_of_parts().max(), all.max());
+    const Vec3 from = 25.0 * random.direction(),
+               along = (10.0 * random.uniform() * random.direction() - from).normalized();
+    std::vector<const GroundPart*> found;
+    ground.find_parts_along(from, along, 30.0, 0.5, found);
+    std::size_t expected = 0;
+    for (const GroundId id : there) expected += enters_box(ground.bounds(id), 0.5, from, along, 30.0);
+    ASSERT_EQ(found.size(), expected);
+    for (const GroundPart* part : found)
+      ASSERT_TRUE(enters_box(ground.bounds(part->id), 0.5, from, along, 30.0));
+    met += found.size();
   }
+  EXPECT_GT(met, 400u);
 }
 
 // A ball has no pose to rest in, and hops by what gravity adds in a step.

@@ -142,6 +142,32 @@ TEST(LevelsOfSleepers, ABudgetTakesTheNearestWithoutALookAtAll) {
   }
 }
 
+// After a cut all seem to be due, as the viewpoint may have come to any of them.
+TEST(LevelsOfSleepers, UnderABudgetACutOfTheCameraConcernsWhoeverIsNearItNow) {
+  PolicySettings policy{
+      .policy = WorkPolicy{4000.0}, .min_dwell_frames = 0, .max_transitions_per_frame = 1'000'000};
+  Scene scene(policy, 3'000);
+  ASSERT_EQ(scene.manager.report().asleep, 3'000);
+  const auto full_within = [&](const Vec3& eye) {  // m: of the farthest one that is full
+    double farthest = 0.0;
+    for (const BodyId body : scene.ids)
+      if (scene.manager.rung(body) == Rung::full)
+        farthest = std::max(farthest, (scene.manager.state(body).position - eye).norm());
+    return farthest;
+  };
+  view_from(scene.manager, {2, 2, 0.4});
+  for (int i = 0; i < 20; ++i) scene.manager.step(kFrame);
+  for (const Vec3& eye : {Vec3(20, 40, 0.4), Vec3(3, 5, 0.4), Vec3(12, 30, 0.4)}) {
+    view_from(scene.manager, eye);
+    const std::int64_t before = scene.manager.report().counters.levels_considered;
+    scene.manager.step(kFrame);
+    EXPECT_LT(scene.manager.report().counters.levels_considered - before, 600) << eye.transpose();
+    for (int i = 0; i < 20; ++i) scene.manager.step(kFrame);
+    ASSERT_GT(scene.manager.report().full, 10);
+    EXPECT_LT(full_within(eye), 0.6 * std::sqrt(scene.manager.report().full)) << eye.transpose();
+  }
+}
+
 TEST(LevelsOfSleepers, NobodyIsLookedAtWhileNothingChanges) {
   Scene scene({.policy = DistancePolicy{1.0}}, 3'000);
   ASSERT_EQ(scene.manager.report().asleep, 3'000);

@@ -142,6 +142,120 @@ TEST_F(QueryGrounds, WhatWasMovedIsMetWhereItIsAndWhatWasRemovedNoMore) {
   EXPECT_FALSE(manager_.cast_ray(down));
 }
 
+// Of cells of half a metre, in waves, and turned by `turn`.
+Mesh waves(int cells, const Quat& turn) {
+  Mesh mesh;
+  for (int y = 0; y <= cells; ++y)
+    for (int x = 0; x <= cells; ++x)
+      mesh.vertices.push_back(turn *
+                              Vec3(0.5 * x, 0.5 * y, 0.3 * std::sin(0.9 * x) * std::cos(0.7 * y) + 100.0));
+  const auto at = [&](int x, int y) { return y * (cells + 1) + x; };
+  for (int y = 0; y < cells; ++y)
+    for (int x = 0; x < cells; ++x) {
+      mesh.faces.push_back({at(x, y), at(x + 1, y), at(x + 1, y + 1)});
+      mesh.faces.push_back({at(x, y), at(x + 1, y + 1), at(x, y + 1)});
+    }
+  return mesh;
+}
+
+Triangle corners_of(const Mesh& mesh, const std::array<int, 3>& f) {
+  return {mesh.vertices[std::size_t(f[0])], mesh.vertices[std::size_t(f[1])],
+          mesh.vertices[std::size_t(f[2])]};
+}
+
+std::optional<double> first_of_all(const Mesh& mesh, const Vec3& from, const Vec3& along, double length) {
+  std::optional<double> first;
+  for (const auto& face : mesh.faces)
+    if (const auto distance = meet_front(corners_of(mesh, face), from, along, first.value_or(length)))
+      first = distance;
+  return first;
+}
+
+// Against each of its triangles, from above and from below; a box with a lid looks all ways, waves one way.
+TEST_F(QueryGrounds, AMeshOfManyTrianglesIsMetWhereTheFirstOneIs) {
+  RandomStream random(84, 0, 0);
+  Mesh pit = waves(12, Quat::Identity());
+  const int rim = int(pit.vertices.size());
+  for (const Vec3& v : make_box({9, 9, 4}).vertices) pit.vertices.push_back(v + Vec3(3, 3, 100));
+  for (const auto& f : make_box({9, 9, 4}).faces) pit.faces.push_back({f[2] + rim, f[1] + rim, f[0] + rim});
+  for (const Mesh& mesh : {waves(20, random.orientation()), pit}) {
+    GroundSolids solids;
+    solids.add_mesh(mesh);
+    solids.prepare();
+    ASSERT_TRUE(solids.surface());
+    SolidQueries queries;
+    Eigen::AlignedBox3d bounds;
+    for (const Vec3& v : mesh.vertices) bounds.extend(v);
+    int met = 0;
+    for (int i = 0; i < 1000; ++i) {
+      const Vec3 from = bounds.center() + 8.0 * random.direction(),
+                 along = (bounds.sample() - from).normalized();
+      const double length = random.uniform(2.0, 20.0);
+      const auto expected = first_of_all(mesh, from, along, length);
+      const auto hit = queries.meet(solids, Vec3::Zero(), Quat::Identity(), {from, along, length});
+      ASSERT_EQ(hit.has_value(), expected.has_value()) << i;
+      if (!hit) continue;
+      ++met;
+      EXPECT_NEAR(hit->distance, *expected, 1e-9);
+      EXPECT_LT(hit->normal.dot(along), 0.0);
+      // What a small ball leaves of the way.
+      const auto swept = queries.meet(solids, Vec3::Zero(), Quat::Identity(), {from, along, length, 0.01});
+      ASSERT_TRUE(swept);
+      EXPECT_LE(swept->distance, *expected);
+    }
+    EXPECT_GT(met, 100);
+    EXPECT_EQ(solids.surface()->made(), 0u);  // nothing needs the solids
+  }
+}
+
+// A ball or a box that touches the surface overlaps it, and so does one that lies in what is solid below it.
+TEST_F(QueryGrounds, VolumesOverlapAMeshAtItsSurfaceAndBelowIt) {
+  const Mesh mesh = waves(20, Quat::Identity());
+  GroundSolids solids;
+  solids.add_mesh(mesh);
+  solids.prepare();
+  SolidQueries queries;
+  RandomStream random(85, 0, 0);
+  const auto overlaps = [&](const Volume& volume) {
+    return queries.overlap(solids, Vec3::Zero(), Quat::Identity(), volume);
+  };
+  const auto box_about = [&](const Vec3& center, double half) {
+    return Volume{center, 2.0 * half, true, random.orientation().toRotationMatrix(), Vec3::Constant(half)};
+  };
+  int near = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 center(random.uniform(1, 9), random.uniform(1, 9), random.uniform(100.4, 101.0));
+    const double reach = random.uniform(0.02, 0.5);
+    double nearest = 1e300;
+    for (const auto& face : mesh.faces) {
+      NearestPoint point(center, 1e300);
+      point.ask(corners_of(mesh, face));
+      nearest = std::min(nearest, point.hit()->distance);
+    }
+    const auto ball = overlaps({center, reach}), box = overlaps(box_about(center, reach));
+    ASSERT_EQ(ball.has_value(), nearest <= reach);
+    near += ball.has_value();
+    if (ball) {
+      EXPECT_NEAR((ball->point - center).norm(), nearest, 1e-9);
+      EXPECT_TRUE(box);
+      EXPECT_EQ(box->normal, Vec3(Vec3::UnitZ()));
+    }
+    if (nearest > 1.8 * reach) {
+      EXPECT_FALSE(box);
+    }
+  }
+  EXPECT_GT(near, 10);
+  for (const auto& face : mesh.faces) {
+    const Triangle t = corners_of(mesh, face);
+    const Vec3 below = (t[0] + t[1] + t[2]) / 3.0 - 0.1 * (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+    EXPECT_TRUE(overlaps({below, 0.01}));
+    EXPECT_TRUE(overlaps(box_about(below, 0.01)));
+    EXPECT_EQ(
+        queries.meet(solids, Vec3::Zero(), Quat::Identity(), {below, Vec3::UnitX(), 1.0, 0.01})->distance,
+        0.0);
+  }
+}
+
 // Very far, and at a place where nothing is: no ray runs for ever.
 TEST_F(QueryGrounds, EndlessRaysEnd) {
   manager_.add_static_box({1, 1, 1}, {0, 0, 0}, Quat::Identity());

@@ -27,10 +27,10 @@ TEST(TriangleTree, NearestPointAndInsideOfABox) {
     const Vec3 p = random_point(random, 0.4);
     const double expected = distance_to_box(p, kSides);
     EXPECT_EQ(tree.contains(p), expected < 0.0);
-    const auto nearest = tree.find_nearest(p, 10.0);
+    const auto nearest = tree.ask(NearestPoint(p, 10.0)).hit();
     ASSERT_TRUE(nearest);
     EXPECT_NEAR(nearest->distance, std::abs(expected), 1e-12);
-    EXPECT_EQ(tree.find_nearest(p, std::abs(expected) * 0.999).has_value(), false);
+    EXPECT_EQ(tree.ask(NearestPoint(p, std::abs(expected) * 0.999)).hit().has_value(), false);
   }
 }
 
@@ -40,14 +40,14 @@ TEST(TriangleTree, RaysMeetASphereWhereTheyShould) {
   int met = 0;
   for (int i = 0; i < 2000; ++i) {
     const Vec3 from = 3.0 * random.direction(), direction = (random_point(random, 1.2) - from).normalized();
-    const auto hit = tree.cast(from, direction, 10.0);
+    const auto hit = tree.ask(FirstMet(from, direction, 10.0)).hit();
     const auto expected = meet_sphere(from, direction, 10.0, Vec3::Zero(), 1.0);
     if (!expected || !hit) continue;
     ++met;
     const double grazing = -direction.dot(hit->normal);
     EXPECT_NEAR(hit->distance, *expected, 3e-3 / std::max(0.05, grazing));
     EXPECT_LT((hit->point - from - hit->distance * direction).norm(), 1e-12);
-    EXPECT_FALSE(tree.cast(from, direction, hit->distance * 0.999));
+    EXPECT_FALSE(tree.ask(FirstMet(from, direction, hit->distance * 0.999)).hit());
   }
   EXPECT_GT(met, 800);
 }
@@ -55,7 +55,8 @@ TEST(TriangleTree, RaysMeetASphereWhereTheyShould) {
 TEST(TriangleTree, RayFromInsideMeetsNothing) {
   const TriangleTree tree(make_box(kSides));
   RandomStream random(3, 0, 0);
-  for (int i = 0; i < 200; ++i) EXPECT_FALSE(tree.cast(random_point(random, 0.09), random.direction(), 10.0));
+  for (int i = 0; i < 200; ++i)
+    EXPECT_FALSE(tree.ask(FirstMet(random_point(random, 0.09), random.direction(), 10.0)).hit());
 }
 
 // Where it stops it touches, and before it did not.
@@ -66,11 +67,11 @@ TEST(TriangleTree, SweptSphereStopsAtFirstTouch) {
   for (int i = 0; i < 3000; ++i) {
     const Vec3 from = 1.5 * random.direction(), direction = (random_point(random, 0.4) - from).normalized();
     const double radius = random.uniform(0.01, 0.3), length = 3.0;
-    const auto hit = tree.sweep(from, direction, length, radius);
+    const auto hit = tree.ask(FirstMet(from, direction, length, radius)).hit();
     const double until = hit ? hit->distance : length;
     double least = 1e9;
     for (double at = 0.0; at < until - 1e-6; at += 0.01)
-      least = std::min(least, tree.find_nearest(from + at * direction, 10.0)->distance);
+      least = std::min(least, tree.ask(NearestPoint(from + at * direction, 10.0)).hit()->distance);
     EXPECT_GT(least, radius - 1e-9);
     if (!hit) {
       ++passed;
@@ -78,7 +79,7 @@ TEST(TriangleTree, SweptSphereStopsAtFirstTouch) {
     }
     ++met;
     const Vec3 center = from + hit->distance * direction;
-    EXPECT_NEAR(tree.find_nearest(center, 10.0)->distance, radius, 1e-9);
+    EXPECT_NEAR(tree.ask(NearestPoint(center, 10.0)).hit()->distance, radius, 1e-9);
     EXPECT_NEAR((center - hit->point).norm(), radius, 1e-9);
     EXPECT_LT(hit->normal.dot(direction), 1e-6);
   }
@@ -94,7 +95,7 @@ TEST(TriangleTree, BoxesAgainstPointsOfBoth) {
     const Vec3 center = random_point(random, 0.5),
                half(random.uniform(0.02, 0.2), random.uniform(0.02, 0.2), random.uniform(0.02, 0.2));
     const Mat3 axes = random.orientation().toRotationMatrix();
-    const bool meets = tree.meets_box(center, axes, half) || tree.contains(center);
+    const bool meets = tree.ask(MeetsBox(center, axes, half)).met() || tree.contains(center);
     // Points within the one that lie within the other.
     bool shared = false;
     for (int k = 0; k < 400 && !shared; ++k) {

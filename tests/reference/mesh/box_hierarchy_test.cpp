@@ -60,7 +60,7 @@ TEST(BoxHierarchy, FindsAllThatARayMeets) {
   const BoxHierarchy tree(boxes);
   const Vec3 from(-12, 0.4, 0.1), direction = Vec3(1.0, 0.05, 0.01).normalized();
   std::vector<int> met;
-  tree.visit_along(from, direction, 20.0, [&](int number) { met.push_back(number); });
+  tree.visit_along(from, direction, 20.0, 0.0, [&](int number) { met.push_back(number); });
   expect_none_missing(met, boxes,
                       [&](const Box& box) { return enters_box(box, 0.0, from, direction, 20.0); });
   EXPECT_LT(met.size(), 300U);
