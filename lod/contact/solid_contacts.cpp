@@ -201,15 +201,42 @@ std::span<const SolidContact> first_run_of(std::span<const SolidContact> contact
   return contacts.first(std::size_t(end - contacts.begin()));
 }
 
+namespace {
+
+// Through the whole step of `dt` s.
+bool goes_on_with(const GroundPart& part, const Vec3& velocity, double dt) {
+  if (!part.moves()) return velocity.isZero(0.0);
+  return !part.shape.probe && part.pose.angular_velocity.isZero(0.0) && part.pose.goes_on_s >= dt &&
+         part.pose.velocity == velocity;
+}
+
+}  // namespace
+
 std::optional<Vec3> find_velocity_of_ground(std::span<const SolidContact> of_body, double dt) {
-  const GroundPose& first = of_body.front().part->pose;
-  const bool together = std::ranges::all_of(of_body, [&](const SolidContact& c) {
-    const GroundPart& part = *c.part;
-    if (!part.moves()) return first.velocity.isZero(0.0);
-    return !part.shape.probe && part.pose.angular_velocity.isZero(0.0) && part.pose.goes_on_s >= dt &&
-           part.pose.velocity == first.velocity;
-  });
-  return together ? std::optional(first.velocity) : std::nullopt;
+  const Vec3& velocity = of_body.front().part->pose.velocity;
+  const bool together = std::ranges::all_of(
+      of_body, [&](const SolidContact& c) { return goes_on_with(*c.part, velocity, dt); });
+  return together ? std::optional(velocity) : std::nullopt;
+}
+
+bool find_faces_going_along(const StatisticalBody& body, const BodyKind& kind, const MetGround& ground,
+                            const Vec3& velocity, double time, std::vector<HalfSpace>& faces) {
+  const GroundSeeker seeker = seeker_of(body, *kind.shape, 0, time);
+  const double reach = seeker.reach();
+  thread_local std::vector<const GroundPart*> parts;
+  thread_local std::vector<PlacedSolid> near;
+  parts.clear(), near.clear();
+  ground.find_parts(body.position, reach, parts);
+  const auto stands_still = [&](const HalfSpace& plane) { return plane.height_of(body.position) < reach; };
+  if (!std::ranges::all_of(parts, [&](const GroundPart* p) { return goes_on_with(*p, velocity, time); }) ||
+      std::ranges::any_of(ground.planes(), stands_still))
+    return false;
+  for (const GroundPart* part : parts) find_solids(*part, body.position, reach, 0.0, near);
+  const std::size_t before = faces.size();
+  if (!find_faces_below(near, body.position, kind.shape->radius, reach, faces)) return false;
+  if (!are_wedge(std::span(faces).subspan(before))) return true;
+  faces.resize(before);
+  return false;
 }
 
 bool find_planes_below(const StatisticalBody& body, const BodyKind& kind, const MetGround& ground,

@@ -38,6 +38,12 @@ std::span<const SolidContact> first_run_of(std::span<const SolidContact> contact
 /// they do not stand still.
 std::optional<Vec3> find_velocity_of_ground(std::span<const SolidContact> of_body, double dt);
 
+/// Of a body that is seen from parts that go on with `velocity` (m/s), without turning: appends the faces of
+/// these that it may meet within `time` seconds. False, and none, where there is more: their edges, or ground
+/// that does not go along.
+bool find_faces_going_along(const StatisticalBody& body, const BodyKind& kind, const MetGround& ground,
+                            const Vec3& velocity, double time, std::vector<HalfSpace>& faces);
+
 /// Appends the planes that stand for what the body may meet of the ground's parts within `time` seconds:
 /// faces, and for gentle ground of triangles one of its mean slope. False, and none, where there is more,
 /// less than `slack` m beyond what it reaches: edges, or what moves.
@@ -78,6 +84,12 @@ void find_sphere_contacts(const StatisticalBody& body, const BodyKind& kind, std
 /// The planes that a body may meet: the ground's and the faces of its parts that it is near. A thread has one
 /// at a time.
 std::span<const HalfSpace> join_planes(std::span<const HalfSpace> planes, std::span<const HalfSpace> faces);
+
+/// The faces of solids that a body moves over which touches no other.
+struct FacesUnder {
+  std::span<const HalfSpace> faces;
+  bool go_along = false;  ///< as of find_faces_going_along(): the solids themselves are not to be met
+};
 
 /// The faces of the ground's parts that bodies lie over: planes, as far as these bodies are concerned.
 struct FacesBelow {

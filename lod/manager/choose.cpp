@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "lod/manager/full_pairs.h"
@@ -118,16 +119,19 @@ void Choose::look_at_those_concerned(StepReport& report) {
 
 // Of the sleepers the nearest as well, until as many are known as may become full.
 void Choose::look_at_nearest(StepReport& report) {
+  constexpr std::size_t kFirst = 16;
   std::vector<std::uint32_t>& next = concerned_;  // who have been looked at
-  for (std::size_t known = candidates_.size();; known = candidates_.size()) {
+  const std::size_t before = candidates_.size();
+  for (;;) {
     const double least =
         (far_.next_due() - traveled_) / levels_.bodies.greatest_importance();  // of those that are left
     counts_.asked = int(asked_.size());
     if (far_.next_due() > 1e299 ||
         reach_of_full(make_units(), views_, policy_, costs_->overhead(counts_)) < least)
       return;
-    // Some more each time: what is known is ranked anew.
-    while (candidates_.size() < known + known / 4 + 16 && far_.next_due() < 1e299) {
+    // Twice as many each time, as what is known is ranked anew.
+    const std::size_t enough = before + kFirst + 2 * (candidates_.size() - before);
+    while (candidates_.size() < enough && far_.next_due() < 1e299) {
       next.clear();
       const double due_before = far_.take_next(next);
       for (const std::uint32_t body : next)
@@ -323,15 +327,16 @@ void Choose::put_far(std::uint32_t body, const LevelCandidate& candidate) {
 // By index, on which the policy falls back among equals.
 void Choose::put_in_order() {
   if (std::ranges::is_sorted(asked_)) return;
-  std::vector<std::uint32_t> order(asked_.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::ranges::sort(order, {}, [this](std::uint32_t i) { return asked_[i]; });
-  std::vector<LevelCandidate> ordered(candidates_.size());
-  std::vector<Activity> activities(activities_.size());
-  for (std::size_t i = 0; i < order.size(); ++i)
-    ordered[i] = candidates_[order[i]], activities[i] = activities_[order[i]];
-  candidates_ = std::move(ordered);
-  activities_ = std::move(activities);
+  order_.resize(asked_.size());
+  std::iota(order_.begin(), order_.end(), 0u);
+  std::ranges::sort(order_, {}, [this](std::uint32_t i) { return asked_[i]; });
+  ordered_.clear(), activities_in_order_.clear();
+  for (const std::uint32_t i : order_) {
+    ordered_.push_back(candidates_[i]);
+    activities_in_order_.push_back(activities_[i]);
+  }
+  std::swap(candidates_, ordered_);
+  std::swap(activities_, activities_in_order_);
   std::ranges::sort(asked_);
 }
 

@@ -165,6 +165,10 @@ class Choose {
       unit_of_;  // of each candidate: what it changes rung with, below; empty: each is alone
   std::vector<LevelCandidate> units_;
   std::vector<Activity> activities_;  // of the candidates, under a budget
+  // While they are put in order.
+  std::vector<std::uint32_t> order_;
+  std::vector<LevelCandidate> ordered_;
+  std::vector<Activity> activities_in_order_;
   StepCounts counts_;
   double full_in_crowd_ = 0.0;    // bodies
   double predicted_error_ = 0.0;  // px

@@ -200,7 +200,7 @@ void NearBodies::move_alone(const Step& step, double time) {
         if (!moves(step.scene.bodies[std::size_t(block[i])])) continue;
         const std::optional<Quat> turned = lane[i] < 0 ? std::nullopt : turns.orientation(lane[i]);
         move_alone(step.support, step.guests, block[i], time, tallies_[std::size_t(begin) + i],
-                   turned ? &*turned : nullptr);
+                   FacesUnder{solids_.faces().of(block[i])}, turned ? &*turned : nullptr);
       }
     }
   });
@@ -229,7 +229,8 @@ void NearBodies::move_on_solids(const Step& step, double time) {
       StatisticalBody& body = step.scene.bodies[std::size_t(index)];
       const bool goes_on = !along.isZero(0.0);
       if (goes_on) body.velocity -= along;
-      move_alone(step.support, step.guests, index, time, tallies_[i], nullptr);
+      move_alone(step.support, step.guests, index, time, tallies_[i],
+                 faces_under(step.scene, index, along, time), nullptr);
       if (goes_on) body.velocity += along, body.position += time * along;
     }
   });
@@ -242,16 +243,29 @@ void NearBodies::move_on_solids(const Step& step, double time) {
   }
 }
 
+// Those that were found of it; where it is seen from ground that goes on with `along`, those of that, if
+// there are no edges. A thread has them of one body at a time.
+FacesUnder NearBodies::faces_under(const ContactScene& scene, std::int32_t index, const Vec3& along,
+                                   double time) const {
+  if (along.isZero(0.0)) return {solids_.faces().of(index)};
+  thread_local std::vector<HalfSpace> faces;
+  faces.clear();
+  StatisticalBody seeker = scene.bodies[std::size_t(index)];
+  const MetGround ground(ground_, scene.world.properties_of(seeker.owner));
+  seeker.velocity += time * scene.gravity(Participant::statistical(std::size_t(index)));
+  if (find_faces_going_along(seeker, scene.kind_of(seeker), ground, along, time, faces)) return {faces, true};
+  return {solids_.faces().of(index)};
+}
+
 void NearBodies::move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time,
-                            ContactTally& tally, const Quat* turned) const {
-  if (!support.is_guest(index))
-    return support.move_alone(index, solids_.faces().of(index), time, tally, turned);
+                            ContactTally& tally, const FacesUnder& under, const Quat* turned) const {
+  if (!support.is_guest(index)) return support.move_alone(index, under, time, tally, turned);
   StatisticalBody& body = support.bodies()[std::size_t(index)];
   StepWorld around = world();
-  around.planes = join_planes(ground_.planes(), solids_.faces().of(index));
+  around.planes = join_planes(ground_.planes(), under.faces);
   around.gravity += body.borne;
   if (!body.is_sphere()) {
-    if (body.alone_on_solid) around.solids = &ground_;
+    if (body.alone_on_solid && !under.go_along) around.solids = &ground_;
     tally = step_support_body(body, kinds_[body.kind], around, time, SupportSettings::of_tables());
     return;
   }

@@ -82,8 +82,9 @@ class NearBodies {
   void find_touching(const Step& step, Pace pace, int substep);
   void choose_movers(const SupportLevel& support, Pace pace);
   void move_alone(const Step& step, double time);
+  FacesUnder faces_under(const ContactScene& scene, std::int32_t index, const Vec3& along, double time) const;
   void move_alone(SupportLevel& support, std::span<Guest> guests, std::int32_t index, double time,
-                  ContactTally& tally, const Quat* turned) const;
+                  ContactTally& tally, const FacesUnder& under, const Quat* turned) const;
   void move_on_solids(const Step& step, double time);
   void move_crowded(const Step& step, Pace pace, int substep);
   void take_crowded(const Step& step);

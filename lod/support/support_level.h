@@ -76,9 +76,9 @@ class SupportLevel {
   std::span<const StatisticalBody> bodies() const { return bodies_; }
   bool is_guest(std::int32_t index) const { return index >= size(); }
   std::span<const std::int32_t> awake_with_guests() const { return awake_; }
-  /// Moves a body that touches no other, over `faces` of static solids and the planes. `turned`: as
-  /// step_support_body takes it.
-  void move_alone(std::int32_t slot, std::span<const HalfSpace> faces, double time, ContactTally& tally,
+  /// Moves a body that touches no other, over faces of solids and the planes. `turned`: as step_support_body
+  /// takes it.
+  void move_alone(std::int32_t slot, const FacesUnder& under, double time, ContactTally& tally,
                   const Quat* turned = nullptr);
   /// After a move of `time` seconds: updates whether the body rests, and repairs a state that is not sound.
   void update_quiet(std::int32_t slot, std::span<const HalfSpace> faces, double time, ContactTally& tally);

@@ -48,8 +48,9 @@ struct SphereScene {
   bool is_bound_to(const BallWay& way) const { return contacts.any_passed() && way.is_long(); }
   /// m: the reach of one awake, as seen by what lies still.
   double still_reach(std::int64_t place) const {
-    return double(step.reach[std::size_t(place)]) + constants.wide_time * constants.drift.norm();
+    return double(step.reach[std::size_t(place)]) + drift_reach();
   }
+  double drift_reach() const { return constants.wide_time * constants.drift.norm(); }
   float bounce_velocity() const {
     return float(StepWorld{}.bounce_velocity) + constants.gravity * constants.time;
   }  // with what gravity adds in a step

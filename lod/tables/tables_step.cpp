@@ -110,6 +110,7 @@ bool TablesLevel::find_contacts(const CellGrid& cells, std::vector<BallPairs>* o
   const auto passes = [&](std::uint32_t first, std::uint32_t second) {
     return pass(way_of(first), way_of(second));
   };
+  touched_sleepers_.find_pairs(cells);
   contacts_.find(spheres_, kinds_, cells, scene_.bounce_velocity(), constants_, simd_, jobs_, others, passes);
   touched_sleepers_.find(TaskRef([&](std::int64_t slot) { wake(int(slot)); }));
   if (spheres_.awake > were_awake) start_woken(were_awake);

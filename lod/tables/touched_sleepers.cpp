@@ -9,18 +9,48 @@ constexpr double kOnGround = 1.01;  // over R: with its centre no higher, a body
 
 }  // namespace
 
-void TouchedSleepers::find_pairs() {
+// m, from its centre.
+double TouchedSleepers::reach_of_sleeper(std::int64_t place) const {
+  return 1.01 * double(constants_.hulls ? kinds_.farthest_reach[spheres_.kind[std::size_t(place)]]
+                                        : spheres_.radius[std::size_t(place)]);
+}
+
+void TouchedSleepers::look_around_awake() {
   for (std::int64_t i = 0; i < spheres_.awake; ++i) {
     const Vec3 position = spheres_.position(i);
     const double reach = scene_.still_reach(i);
     still_.find_near(position, reach, [&](std::uint32_t other) {
       const std::int64_t at = spheres_.place_of_slot[other];
-      const double limit = reach + 1.01 * double(constants_.hulls ? kinds_.farthest_reach[spheres_.kind[at]]
-                                                                  : spheres_.radius[at]);
+      const double limit = reach + reach_of_sleeper(at);
       if ((spheres_.position(at) - position).squaredNorm() < limit * limit)
         pairs_.emplace_back(std::uint32_t(i), other);
     });
   }
+}
+
+void TouchedSleepers::look_around_sleepers(const CellGrid& cells) {
+  for (std::int64_t at = spheres_.awake; at < spheres_.size(); ++at) {
+    const Vec3 position = spheres_.position(at);
+    const double own = reach_of_sleeper(at);
+    const auto slot = std::uint32_t(spheres_.slot[std::size_t(at)]);
+    cells.find_near(position, own + scene_.drift_reach(), [&](std::uint32_t ball) {
+      if (ball >= std::uint32_t(spheres_.awake)) return;
+      const double limit = scene_.still_reach(ball) + own;
+      if ((spheres_.position(ball) - position).squaredNorm() < limit * limit) pairs_.emplace_back(ball, slot);
+    });
+  }
+}
+
+// In the cells of those awake, which lie side by side in memory, a sleeper takes a tenth of the time that one
+// awake takes among the sleepers.
+void TouchedSleepers::find_pairs(const CellGrid& cells) {
+  constexpr std::int64_t kMany = 8;  // sleepers for each that is awake
+  pairs_.clear(), left_asleep_.clear();
+  if (still_.empty()) return;
+  if (spheres_.size() - spheres_.awake > kMany * spheres_.awake)
+    look_around_awake();
+  else
+    look_around_sleepers(cells);
   if (settings_.pair_filter)
     std::erase_if(pairs_, [&](const auto& touch) {
       return !settings_.pair_filter(spheres_.owner[touch.first],
@@ -30,9 +60,7 @@ void TouchedSleepers::find_pairs() {
 }
 
 void TouchedSleepers::find(TaskRef wake) {
-  pairs_.clear(), left_asleep_.clear();
-  if (still_.empty()) return;
-  find_pairs();
+  if (pairs_.empty()) return;
   for (const auto& [place, slot] : pairs_) {
     const std::int64_t at = spheres_.place_of_slot[slot];
     if (at < spheres_.awake) continue;
@@ -45,7 +73,7 @@ void TouchedSleepers::find(TaskRef wake) {
     if (velocity.norm() > rest_law_.wake_speed(scene_.kind_of(at).shape->radius))
       wake(slot);
     else
-      left_asleep_.emplace_back(place, slot);
+      left_asleep_.push_back({std::int64_t(place), slot, normal});
   }
   wake_struck(wake);
   for (auto& touch : pairs_) touch.second = spheres_.place_of_slot[touch.second];
@@ -53,9 +81,10 @@ void TouchedSleepers::find(TaskRef wake) {
 
 bool TouchedSleepers::any_blow() const {
   double slowest = 1e300;  // m/s
-  for (const auto& [_, slot] : left_asleep_)
-    slowest = std::min(slowest, rest_law_.wake_speed(
-                                    scene_.kind_of(std::int64_t(scene_.place_of(int(slot)))).shape->radius));
+  for (const Touch& touch : left_asleep_)
+    slowest = std::min(
+        slowest,
+        rest_law_.wake_speed(scene_.kind_of(std::int64_t(scene_.place_of(int(touch.slot)))).shape->radius));
   bool any = false;
   contacts_.each([&](const SphereContact& c) { any |= double(c.closing) < -slowest; });
   return any;
@@ -95,23 +124,23 @@ void TouchedSleepers::wake_struck(TaskRef wake) {
   });
   std::int32_t last_number = -1;
   std::uint32_t last_slot = ~0u;
-  std::ranges::sort(left_asleep_, {}, [](const auto& touch) { return std::pair(touch.second, touch.first); });
-  for (const auto& [place, slot] : left_asleep_) {
+  std::ranges::sort(left_asleep_, {}, [](const Touch& touch) { return std::pair(touch.slot, touch.place); });
+  for (const auto& [place, slot, normal] : left_asleep_) {
     const auto at = std::int64_t(scene_.place_of(int(slot)));
     if (slot != last_slot) last_slot = slot, last_number = add_body(at);
-    blows_.add_contact(number_of(place), last_number, scene_.separate(place, at).first, 0.0, 0.0);
+    blows_.add_contact(number_of(place), last_number, normal, 0.0, 0.0);
   }
   struck_slots_.clear();
   for (const std::int32_t number : blows_.find())
     struck_slots_.push_back(std::uint32_t(spheres_.slot[std::size_t(places_[std::size_t(number)])]));
-  std::erase_if(left_asleep_, [&](const auto& touch) {
-    return std::ranges::find(struck_slots_, touch.second) != struck_slots_.end();
+  std::erase_if(left_asleep_, [&](const Touch& touch) {
+    return std::ranges::find(struck_slots_, touch.slot) != struck_slots_.end();
   });
   for (const std::uint32_t slot : struck_slots_) wake(slot);
 }
 
 void TouchedSleepers::wake_left_asleep(TaskRef wake) {
-  for (const auto& [_, slot] : left_asleep_) wake(slot);
+  for (const Touch& touch : left_asleep_) wake(touch.slot);
   left_asleep_.clear();
 }
 

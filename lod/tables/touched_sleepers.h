@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "lod/broad_phase/cell_grid.h"
 #include "lod/broad_phase/still_grid.h"
 #include "lod/jobs.h"
 #include "lod/statistical/blow_reach.h"
@@ -18,8 +19,10 @@ class TouchedSleepers {
   /// `still`: those asleep, by slot.
   TouchedSleepers(const SphereScene& scene, const StillGrid& still) : scene_(scene), still_(still) {}
 
-  /// Of awake bodies, whose other contacts have been found. Calls wake(slot) for those that are hit hard
-  /// enough.
+  /// First the pairs of awake bodies, whose balls are in `cells` by their places, and sleepers.
+  void find_pairs(const CellGrid& cells);
+  /// Then, when the awake bodies' other contacts have been found, those of the pairs that touch. Calls
+  /// wake(slot) for those that are hit hard enough.
   void find(TaskRef wake);
   /// Places of who touches, and of who slept when find() began.
   std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs() const { return pairs_; }
@@ -27,14 +30,21 @@ class TouchedSleepers {
   /// Of those that are touched too gently to be woken, only those by whom is_drawn(place).
   template <class IsDrawn>
   void keep_left_asleep(const IsDrawn& is_drawn) {
-    std::erase_if(left_asleep_, [&](const auto& touch) { return !is_drawn(std::int64_t(touch.first)); });
+    std::erase_if(left_asleep_, [&](const Touch& touch) { return !is_drawn(touch.place); });
   }
   void wake_left_asleep(TaskRef wake);
 
   std::size_t bytes() const { return pairs_.capacity() * sizeof pairs_[0]; }
 
  private:
-  void find_pairs();
+  struct Touch {
+    std::int64_t place;  // awake
+    std::uint32_t slot;  // asleep
+    Vec3 normal;         // into the one awake
+  };
+  void look_around_awake();
+  void look_around_sleepers(const CellGrid& cells);
+  double reach_of_sleeper(std::int64_t place) const;
   void wake_struck(TaskRef wake);
   bool any_blow() const;
   std::int32_t add_body(std::int64_t place);
@@ -49,8 +59,8 @@ class TouchedSleepers {
   const Spheres& spheres_ = scene_.spheres;
   const SphereContacts& contacts_ = scene_.contacts;
 
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_,  // place awake, slot asleep; then both places
-      left_asleep_;  // those of them that touch too gently to wake the sleeper, with its slot
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  // place awake, slot asleep; then both places
+  std::vector<Touch> left_asleep_;  // those of them that touch too gently to wake the sleeper
   BlowReach blows_;
   std::vector<std::int32_t> numbered_;  // of each place awake: its number there; −1: none
   std::vector<std::int64_t> places_;    // of each number

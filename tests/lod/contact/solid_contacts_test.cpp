@@ -254,6 +254,42 @@ TEST(PlanesBelow, OfGentleGroundAreOneThatTurnsByDegrees) {
   EXPECT_FALSE(all) << "beyond its border";
 }
 
+// Seen from a belt or a lift, its faces are planes as those of ground that stands still.
+TEST(FacesGoingAlong, AreThoseOfGroundThatGoesOnAsOne) {
+  const BodyKind kind =
+      make_body_kind(std::make_shared<const Shape>(make_shape("cube", make_box({kSide, kSide, kSide}))));
+  const Vec3 velocity(0.5, 0, 0.25);
+  const auto faces_at = [&](const Vec3& position, const GroundPose& pose, bool floor) {
+    Ground ground;
+    ground.add_part(ground.part(ground.add_box({2, 2, 1}, {9, 9, 9}, Quat::Identity(), 3)).shape, pose, 3);
+    if (floor) ground.add_plane({Vec3::UnitZ(), -0.05, 0});
+    StatisticalBody body;
+    body.position = position;
+    std::vector<HalfSpace> faces;
+    const bool all = find_faces_going_along(body, kind, ground, velocity, kSolidStep, faces);
+    EXPECT_EQ(faces.empty(), !all);
+    return faces;
+  };
+  const GroundPose going{.position = {0, 0, -0.5},
+                         .orientation = Quat::Identity(),
+                         .velocity = velocity,
+                         .goes_on_s = kSolidStep};
+  const Vec3 within(0.3, 0.2, 0.5 * kSide), at_edge(0.95, 0.2, 0.5 * kSide);
+  const auto faces = faces_at(within, going, false);
+  ASSERT_EQ(faces.size(), 1U);
+  EXPECT_LT((faces[0].normal - Vec3::UnitZ()).norm(), 1e-9);
+  EXPECT_NEAR(faces[0].offset, 0.0, 1e-9);
+  EXPECT_TRUE(faces_at(at_edge, going, false).empty());
+  EXPECT_TRUE(faces_at(within, going, true).empty()) << "the floor stands still";
+  GroundPose other = going;
+  other.velocity.x() += 0.1;
+  EXPECT_TRUE(faces_at(within, other, false).empty());
+  other = going, other.angular_velocity.z() = 0.1;
+  EXPECT_TRUE(faces_at(within, other, false).empty());
+  other = going, other.goes_on_s = 0.5 * kSolidStep;
+  EXPECT_TRUE(faces_at(within, other, false).empty());
+}
+
 TEST(HeldSeveralWays, IsACornerButNotAnEvenFloor) {
   const std::vector<HalfSpace> floor{{.normal = Vec3::UnitZ()}},
       corner{{.normal = Vec3::UnitZ()}, {.normal = Vec3::UnitX()}};
