@@ -72,6 +72,21 @@ void meet_uncovered(const PairBody& body, const PlacedSolid& solid, double margi
   for (const Vec3& way : ways) meet_along(body, solid, way, margin, contacts);
 }
 
+// With the face of a solid that the body lies over wholly, without a search among hulls. None near its edges.
+std::optional<PairContact> meet_face_below(const GroundSeeker& seeker, const PlacedSolid& solid) {
+  const StatisticalBody& body = seeker.body;
+  const auto face = find_face_below(solid, body.position, seeker.reach());
+  if (!face) return {};
+  std::int32_t hint = body.support_hint;
+  const HullContact lowest =
+      find_lowest_point(seeker.shape, body.orientation, face->normal, face->height_of(body.position), hint);
+  PairContact contact;
+  contact.normal = face->normal, contact.gap = lowest.gap;
+  contact.manifold.count = 1;
+  contact.manifold.points[0] = {body.position + lowest.arm - 0.5 * lowest.gap * face->normal, lowest.gap};
+  return contact;
+}
+
 // Across such triangles a hull lies on their edges: no one of them holds it.
 bool is_small_beside(const SurfaceTriangle& triangle, double radius) {
   constexpr double kLongest = 3.0;  // over the radius, of an edge
@@ -288,6 +303,12 @@ void find_solid_contacts(const StatisticalBody& body, const BodyKind& kind, std:
     if (wanted == SolidSearch::one_of_a_part && found.size() > before && found.back().part == solid.part)
       continue;
     if (sieve && solid.solid->surface && sieve->is_beyond(solid)) continue;
+    if (wanted == SolidSearch::one_of_a_part)
+      if (const auto contact = meet_face_below(seeker, solid)) {
+        if (may_close(*contact, *solid.part, seeker, time))
+          found.push_back({slot, solid.number, solid.part->material, solid.part, *contact});
+        continue;
+      }
     meet_solid(self, solid, seeker.touching + seeker.way, search, over);
     if (search.contacts.empty()) continue;
     const Vec3 way = (body.velocity - solid.part->velocity_at(body.position)) * time;

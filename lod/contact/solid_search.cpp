@@ -221,7 +221,7 @@ bool find_uneven_ground(const GroundSeeker& seeker, const MetGround& ground, dou
     else
       find_solids(*part, center, from_half_way, after, near);
   }
-  if (any_moves) return true;
+  if (any_moves && time > 0.0) return true;
   const std::size_t before = planes.size();
   if (find_faces_below(near, center, seeker.shape.radius, reach, planes)) {
     if (!are_wedge(std::span(planes).subspan(before))) return false;

@@ -153,7 +153,7 @@ bool HullsOnGround::overlaps_ground(const StatisticalBody& body, const BodyKind&
   thread_local std::vector<HalfSpace> planes;
   contacts.clear();
   planes.assign(ground_.planes().begin(), ground_.planes().end());
-  find_solid_contacts(body, kind, 0, ground_, 0.0, 0.0, contacts, planes);
+  find_solid_contacts(body, kind, 0, ground_, constants_.wide_time, 0.0, contacts, planes);
   const double deepest = -kSunk * kind.shape->radius;
   return is_sunk(body, *kind.shape, planes) ||
          std::ranges::any_of(contacts, [&](const SolidContact& c) { return c.contact.gap < deepest; });

@@ -173,10 +173,11 @@ TEST(SignatureTiming, OneThatCannotBeHadTakesNoOtherFromThoseWhoWait) {
     if (i == 0) bad = add(manager, ball, at({0, 9, 1}));
   }
   for (const BodyId body : bodies) others.push_back(add(without_clips, box, manager.state(body)));
+  add(manager, box_shape({0.5, 0.5, 0.1}), at({0, 20, 1}));
   manager.step(kFrame), without_clips.step(kFrame);
   go = true;
-  while (answered < 2) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // for the answer to be there
+  while (answered < 3)  // one after the other: then both answers are there
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_THROW(manager.step(kFrame), InputError);
   manager.remove_body(bad);
   run(manager, 3.0), run(without_clips, 3.0);

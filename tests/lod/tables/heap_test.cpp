@@ -65,6 +65,50 @@ TEST(TablesHeap, WhatIsPouredSleeps) {
   }
 }
 
+// Of few sleepers each looks for who is awake, among many each of those awake looks for sleepers: they find
+// the same. Boxes fall onto a heap that sleeps, once with many asleep far away.
+TEST(TablesHeap, SleepersFarAwayChangeNothing) {
+  constexpr int kHeap = 60, kFalling = 20, kFar = 1'500;
+  const auto box = box_shape({0.2, 0.3, 0.4});
+  const auto signature = coarse_signature(*box, {});
+  const auto states_after = [&](int far) {
+    Manager manager({.signatures = [&](const Shape&, const ContactLaw&) { return signature; }});
+    manager.add_plane(Vec3::UnitZ(), 0.0);
+    for (const double side : {-1.1, 1.1}) {
+      manager.add_static_box({1, 4, 8}, {side, 0, 4}, Quat::Identity());
+      manager.add_static_box({4, 1, 8}, {0, side, 4}, Quat::Identity());
+    }
+    RandomStream random(10, 0, 0);
+    std::vector<BodyId> bodies;
+    for (int i = 0; i < kHeap + kFalling; ++i)
+      bodies.push_back(add(manager, box,
+                           {.position = {random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), 0.3 + 0.3 * i},
+                            .orientation = random.orientation()},
+                           LevelChoice::tables));
+    run(manager, 15.0);
+    for (int i = 0; i < far; ++i)
+      bodies.push_back(
+          add(manager, box, testing::at({0.8 * (i % 40) + 50.0, 0.8 * (i / 40), 0.2}), LevelChoice::tables));
+    run(manager, 5.0);
+    for (const BodyId body : bodies) EXPECT_TRUE(manager.asleep(body)) << body.index;
+    for (int i = kHeap; i < kHeap + kFalling; ++i)
+      manager.set_state(bodies[std::size_t(i)], {.position = {0.0, 0.0, 2.5 + 0.5 * (i - kHeap)},
+                                                 .orientation = random.orientation()});
+    std::vector<RigidState> states;
+    for (int step = 0; step < 240; ++step) {
+      manager.step(kFrame);
+      for (int i = 0; i < kHeap + kFalling; ++i) states.push_back(manager.state(bodies[std::size_t(i)]));
+    }
+    return states;
+  };
+  const auto few = states_after(0), many = states_after(kFar);
+  ASSERT_EQ(few.size(), many.size());
+  for (std::size_t i = 0; i < few.size(); ++i) {
+    ASSERT_EQ(few[i].position, many[i].position) << i;
+    ASSERT_EQ(few[i].velocity, many[i].velocity) << i;
+  }
+}
+
 // One that leaned over another's end met it once it was deep in it, was lifted out and fell again, for ever:
 // in one pour of ten.
 TEST(TablesHeap, PostsThatLeanOverEachOtherSleep) {
