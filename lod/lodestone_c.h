@@ -348,7 +348,8 @@ typedef enum lodestone_rule {
   LODESTONE_RULE_OUT_OF_VIEW = 12,
   LODESTONE_RULE_LOOK_AHEAD = 13,
   LODESTONE_RULE_JOINED = 14,
-  LODESTONE_RULE_CARRIES_FULL = 15
+  LODESTONE_RULE_CARRIES_FULL = 15,
+  LODESTONE_RULE_PAUSED = 16
 } lodestone_rule;
 
 /* Why a body has its rung; see Why. */

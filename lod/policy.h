@@ -29,7 +29,8 @@ struct ProjectedSizePolicy {
 /// What a whole step may cost, in processor time of the calling thread: choice, transfer, all three rungs and
 /// what they have to do with each other. The nearest bodies are full, the next ones `support`, the others
 /// `tables`, as many as are predicted to fit; the prediction is learnt from measured steps, so the levels
-/// differ from run to run.
+/// differ from run to run. After it had to send bodies down, the others keep their rungs for 8 steps; up to
+/// 128 where that happens again while the viewpoints stay within a metre.
 struct BudgetPolicy {
   double budget_ms = 4.0;  ///< ≥ 0
 };

@@ -29,7 +29,7 @@ constexpr double kMostFaces = 3e6;       // of all bodies together
 constexpr int kLeastFaces = 60;          // of one, where it had more
 constexpr double kUnitsOfRadius = 8192;  // positions are kept to this part of the smallest body's radius, or
 constexpr double kMostUnits = 2e9;       // more roughly where a body goes farther than so many of that
-constexpr int kLastRule = int(Rule::carries_full);
+constexpr int kLastRule = int(Rule::paused);
 
 // The blobs, and their places for the header.
 class Blobs {

@@ -7,7 +7,7 @@ using namespace lodestone;
 using namespace lodestone::c;
 
 // The rules have the same numbers, and lists of ids are handed over as they are.
-static_assert(int(Rule::carries_full) == LODESTONE_RULE_CARRIES_FULL &&
+static_assert(int(Rule::paused) == LODESTONE_RULE_PAUSED &&
               int(Rule::overlap_put_off) == LODESTONE_RULE_OVERLAP_PUT_OFF &&
               int(Rule::dwell) == LODESTONE_RULE_DWELL);
 static_assert(sizeof(BodyId) == sizeof(lodestone_body) && alignof(BodyId) == alignof(lodestone_body) &&

@@ -30,8 +30,8 @@ double find_travel(const Views& before, const Views& now) {
 
 /// Whether the policy wanted another rung for it than it has.
 bool waits(Rule reason) {
-  return reason == Rule::dwell || reason == Rule::queued || reason == Rule::overlap_put_off ||
-         reason == Rule::most_reached;
+  return reason == Rule::dwell || reason == Rule::queued || reason == Rule::paused ||
+         reason == Rule::overlap_put_off || reason == Rule::most_reached;
 }
 
 }  // namespace
@@ -40,6 +40,7 @@ void Choose::set_policy(const PolicySettings& policy) {
   policy_ = policy;
   limits_ = limits_of(policy);
   look_at_all_ = true;
+  pause_ = {};
 }
 
 void Choose::set_views(Views views) {
@@ -409,7 +410,7 @@ void Choose::archive(StateArchive& a) {
   own(policy);
   std::vector<std::byte> written = own.bytes();
   a(written, groups_, carriers_, views_, turned_, look_at_all_, wishing_, changed_, support_sleepers_,
-    seen_or_not_, waiting_, next_waiting_, far_, traveled_, counts_);
+    seen_or_not_, waiting_, next_waiting_, far_, traveled_, pause_, counts_);
   if (a.reading()) look_at_all_ |= written != own.bytes();
 }
 

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "lod/manager/change_pause.h"
 #include "lod/manager/choose_levels.h"
 #include "lod/manager/cost_model.h"
 #include "lod/manager/far_bodies.h"
@@ -158,6 +159,7 @@ class Choose {
   std::size_t next_waiting_ = 0;                 // to be asked about
   std::vector<std::uint32_t> concerned_;         // this step
   FarBodies far_;
+  ChangePause pause_;
   double traveled_ = 0.0;             // m: how far viewpoints came, at most
   std::vector<std::uint32_t> asked_;  // bodies of the candidates
   std::vector<LevelCandidate> candidates_;

@@ -133,7 +133,10 @@ void Choose::count_pairs_within() {
 }
 
 LevelDecision Choose::decide() {
-  const LevelDecision decision = choose_levels(make_units(), views_, policy_, costs_->overhead(counts_));
+  StepOverhead overhead = costs_->overhead(counts_);
+  overhead.pauses = pause_.holds();
+  const LevelDecision decision = choose_levels(make_units(), views_, policy_, overhead);
+  pause_.note(decision.sent_down > 0, traveled_);
   return unit_of_.empty() ? decision : tell_members(decision);
 }
 

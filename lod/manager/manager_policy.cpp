@@ -164,6 +164,8 @@ std::string_view text_of(Rule rule) {
       return "joints hold its ODE body";
     case Rule::carries_full:
       return "it carries or pushes full bodies";
+    case Rule::paused:
+      return "it waits, as the budget has just sent bodies down";
   }
   return "";
 }

@@ -54,7 +54,7 @@ TEST_F(SavedPlayback, HoldsEveryFrameOfEveryBody) {
   EXPECT_EQ(header["names"]["0"], "ball");
   EXPECT_EQ(header["shapes"].size(), 2u);
   EXPECT_EQ(header["ground"].size(), 2u);
-  EXPECT_EQ(header["rules"].size(), std::size_t(Rule::carries_full) + 1);
+  EXPECT_EQ(header["rules"].size(), std::size_t(Rule::paused) + 1);
   // Positions add up, frame after frame, to where the crate is at the end.
   const std::vector<std::uint8_t> raw = inflated(playback, "poses");
   ASSERT_EQ(raw.size(), 21u * 20 * 2);

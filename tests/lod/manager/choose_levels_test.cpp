@@ -227,8 +227,7 @@ TEST(BudgetPolicy, T11EveryBodyHasItsTurnAsTheViewpointMoves) {
 }
 
 TEST(Policy, EveryReasonHasWords) {
-  for (int reason = 0; reason <= int(Rule::carries_full); ++reason)
-    EXPECT_FALSE(text_of(Rule(reason)).empty());
+  for (int reason = 0; reason <= int(Rule::paused); ++reason) EXPECT_FALSE(text_of(Rule(reason)).empty());
 }
 
 TEST(DistancePolicy, EachRungHasItsDistanceAndItsHysteresis) {
@@ -465,6 +464,23 @@ TEST(BudgetPolicy, OverItTheFarthestGoDownAtOnceWhateverDwellAndCap) {
   EXPECT_GT(cost, 13.0);
   EXPECT_EQ(candidates.front().rung, Rung::full);
   EXPECT_EQ(candidates.back().rung, Rung::tables);
+}
+
+TEST(BudgetPolicy, WhileItPausesNothingChangesButWhatMust) {
+  const std::vector<LevelCandidate> candidates(30, at(1));
+  const auto paused = choose_levels(candidates, kAtOrigin, by_budget(22.0), {.pauses = true});
+  EXPECT_TRUE(paused.promote.empty());
+  EXPECT_EQ(paused.reasons.front(), Rule::paused);
+  EXPECT_EQ(paused.sent_down, 0);
+  std::vector<LevelCandidate> full;
+  for (int i = 0; i < 50; ++i) full.push_back(on_ladder(1 + i, Rung::full));
+  const auto down = choose_levels(full, kAtOrigin, by_budget(14.0), {.pauses = true});
+  EXPECT_GT(down.sent_down, 0);
+  EXPECT_EQ(down.demote.size(), std::size_t(down.sent_down));
+  std::vector<LevelCandidate> newcomers = candidates;
+  for (LevelCandidate& c : newcomers) c.newcomer = true;
+  EXPECT_EQ(choose_levels(newcomers, kAtOrigin, by_budget(22.0), {.pauses = true}).promote.size(),
+            choose_levels(newcomers, kAtOrigin, by_budget(22.0), {}).promote.size());
 }
 
 TEST(BudgetPolicy, NothingIsLeftWhereOthersUseItUp) {

@@ -178,7 +178,7 @@ TEST(LevelChoices, WhatIsNotToBeFullLeavesInTheNextStep) {
 
 TEST(RuleTexts, EachIsItsOwn) {
   std::set<std::string_view> texts;
-  for (int rule = 0; rule <= int(Rule::carries_full); ++rule) {
+  for (int rule = 0; rule <= int(Rule::paused); ++rule) {
     EXPECT_FALSE(text_of(Rule(rule)).empty()) << rule;
     EXPECT_TRUE(texts.insert(text_of(Rule(rule))).second) << text_of(Rule(rule));
   }

@@ -1,0 +1,42 @@
+// How long rungs stay as they are after a budget sent bodies down. Who goes up in a heap moves those around
+// it, and what these then cost may be more than the budget has: so bodies go down again, all fall asleep,
+// there is room once more, and so on for ever. Therefore, while the viewpoints stay, each time that bodies
+// had to go down the others wait twice as long as the time before.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "reference/state_archive.h"
+
+namespace lodestone {
+
+class ChangePause {
+ public:
+  static constexpr std::int32_t kShortest = 8, kLongest = 128;  ///< steps
+  static constexpr double kElsewhere = 1.0;  ///< m: who has come so far sees others, and waits no more
+
+  /// Whether nothing changes in the next step but what must.
+  bool holds() const { return left_ > 0; }
+  /// After a step: whether its budget sent bodies down; how far the viewpoints have come by now, m.
+  void note(bool sent_down, double traveled) {
+    if (std::abs(traveled - from_) > kElsewhere) *this = {}, from_ = traveled;
+    if (holds()) {
+      --left_, since_ = 0;
+    } else if (++since_ > length_) {
+      length_ = std::max(length_ / 2, kShortest / 2), since_ = 0;
+    }
+    if (!sent_down) return;
+    if (!holds()) length_ = std::min(2 * length_, kLongest);
+    left_ = length_;
+  }
+  void archive(StateArchive& a) { a(left_, length_, since_, from_); }
+
+ private:
+  std::int32_t left_ = 0, length_ = kShortest / 2;  // steps: of this pause; of the last one
+  std::int32_t since_ = 0;                          // steps since it ended, or was last halved
+  double from_ = 0.0;                               // m: where the viewpoints were then
+};
+
+}  // namespace lodestone
