@@ -28,7 +28,7 @@ enum class Rule : std::uint8_t {
   look_ahead,         ///< it is about to hit a full body
   joined,             ///< joints of the caller's on its ODE body keep it full
   carries_full,       ///< it is kinematic and touches full bodies
-  paused,             ///< the policy wants another rung, but the budget has just sent bodies down
+  paused,             ///< it would go up, but the budget has just sent some back who had gone up
 };
 std::string_view text_of(Rule rule);  ///< in words, as "near a viewpoint"
 

@@ -106,7 +106,8 @@ void ChangeQueue::add(const Ranked& by_distance, Target target) {
 
 void ChangeQueue::hold_or_queue(const Ranked& wish, std::vector<Ranked>& queue) {
   const LevelCandidate& c = candidate(wish);
-  if (c.dwell_left == 0 && !overhead_.pauses) return queue.push_back(wish);
+  const bool pauses = overhead_.pauses && &queue == &promote_;
+  if (c.dwell_left == 0 && !pauses) return queue.push_back(wish);
   decision_.reasons[std::size_t(wish.index)] = c.dwell_left > 0 ? Rule::dwell : Rule::paused;
   held_by_dwell_[std::size_t(c.rung)] += places_of(c, c.rung);
 }
@@ -136,7 +137,7 @@ void ChangeQueue::demote_at_once() {
       continue;
     }
     if (!has_place(wish)) wish.to = c.open.lowest();
-    decision_.sent_down += !must_leave(c) && room_ < 0.0;
+    decision_.sent_back += !must_leave(c) && room_ < 0.0 && c.dwell_left > 0;
     make(wish, decision_.demote);
   }
 }

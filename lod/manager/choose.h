@@ -135,6 +135,7 @@ class Choose {
   void put_in_order();
   std::span<const LevelCandidate> make_units();
   void count_pairs_within();
+  bool comes_to_rest() const;
   LevelDecision decide();
   LevelDecision tell_members(const LevelDecision& of_all);
   RungChanges take_answers(const LevelDecision& decision);

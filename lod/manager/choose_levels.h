@@ -24,7 +24,7 @@ struct StepOverhead {
   double pair = 0.0;
   /// Once, where there is such a pair that is awake, for what the dearest of them may take in a bad step.
   double spike = 0.0;
-  bool pauses = false;  ///< nothing changes but what must (change_pause.h)
+  bool pauses = false;  ///< none goes up but who must (change_pause.h)
 };
 
 struct LevelDecision {
@@ -39,7 +39,7 @@ struct LevelDecision {
   /// by turns, and as exchanges where each waits for the other's place.
   std::vector<Change> promote, demote;
   std::vector<Rule> reasons;  ///< one per candidate
-  int sent_down = 0;          ///< of `demote`: to bring the cost back within the budget
+  int sent_back = 0;          ///< of `demote`: by the budget, though they had just changed
 };
 
 /// Without viewpoints no body is full that need not be.

@@ -132,11 +132,19 @@ void Choose::count_pairs_within() {
   }
 }
 
+// Whether so many sleep that the others may do so if only they are left alone.
+bool Choose::comes_to_rest() const {
+  constexpr int kAThird = 3;
+  const int asleep =
+      levels_.full.asleep_count() + (levels_.statistical ? levels_.statistical->asleep_count() : 0);
+  return kAThird * asleep > levels_.bodies.size();
+}
+
 LevelDecision Choose::decide() {
   StepOverhead overhead = costs_->overhead(counts_);
-  overhead.pauses = pause_.holds();
+  overhead.pauses = pause_.holds() && comes_to_rest();
   const LevelDecision decision = choose_levels(make_units(), views_, policy_, overhead);
-  pause_.note(decision.sent_down > 0, traveled_);
+  pause_.note(decision.sent_back > 0, traveled_);
   return unit_of_.empty() ? decision : tell_members(decision);
 }
 

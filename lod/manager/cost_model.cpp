@@ -35,8 +35,9 @@ constexpr double kChargeOfCrowd = 0.15;
 // Weight of the newest step in a factor, and what of an error counts at most, as a part of what was expected,
 // in a first bad step and in the next ones: one spike does not make a price.
 constexpr double kNewest = 0.2, kErrorFirst = 0.5, kErrorMost = 2.0;
-// By so much in each step the factors of a rung come nearer to their mean: what one charge costs is not told
-// from another that always comes with it.
+// By so much in each step the factors of what is awake on a rung come nearer to their mean: what one charge
+// costs is not told from another that always comes with it. Of those that are not there nothing is told, and
+// sleepers, which there are for long without the others, tell nothing of these.
 constexpr double kCommon = 0.01;
 constexpr double kFactorMin = 0.02, kFactorMax = 50.0;
 
@@ -149,20 +150,22 @@ void CostModel::learn(double budget_ms, double predicted_ms, const StepCounts& c
 
 // Each charge answers for an error by its share in what was expected.
 void CostModel::learn_rung(std::size_t rung, const Charges& charges, double measured_ms) {
+  constexpr auto kAsleep = std::size_t(Activity::asleep);
   Charges share{};
-  double expected_ms = 0.0, work = 0.0;
-  for (std::size_t charge = 0; charge < kCharges; ++charge)
-    work += work_of(Rung(rung), charge) * charges[charge];
-  for (std::size_t charge = 0; charge < kCharges; ++charge)
-    expected_ms += share[charge] =
-        1e-3 * factors_[rung][charge] * work_of(Rung(rung), charge) * charges[charge];
+  double expected_ms = 0.0, awake_work = 0.0;
+  for (std::size_t charge = 0; charge < kCharges; ++charge) {
+    const double work = work_of(Rung(rung), charge) * charges[charge];
+    expected_ms += share[charge] = 1e-3 * factors_[rung][charge] * work;
+    if (charge != kAsleep) awake_work += work;
+  }
   if (expected_ms < 1e-3) return;  // a microsecond says nothing
   const double last = std::exchange(last_error_[rung], measured_ms / expected_ms - 1.0),
-               mean = 1e3 * expected_ms / work;
+               mean = 1e3 * (expected_ms - share[kAsleep]) / awake_work;
   const double error = std::min(last_error_[rung], std::max(kErrorFirst, last));
   for (std::size_t charge = 0; charge < kCharges; ++charge) {
     double& factor = factors_[rung][charge];
-    factor = learnt(factor, share[charge] / expected_ms, error) * std::pow(mean / factor, kCommon);
+    const double common = charge != kAsleep && share[charge] > 0.0 ? std::pow(mean / factor, kCommon) : 1.0;
+    factor = learnt(factor, share[charge] / expected_ms, error) * common;
   }
 }
 

@@ -136,21 +136,24 @@ void LeftPlaces::watch_callers(const Levels& levels) {
   }
 }
 
-// One that is pushed, or that creeps, may be kept awake while another sleeps on it, or leans on it if it is
-// full.
-void LeftPlaces::watch_who_bears(const Levels& levels, std::span<const BodyId> slept) {
+// A full one that is pushed, or that creeps, may be kept awake while another sleeps on it, or leans on it.
+void LeftPlaces::watch_full_who_bear(const Levels& levels, std::span<const BodyId> slept) {
+  if (slept.empty()) return;
   std::vector<std::uint32_t> awake;
-  if (!slept.empty())
-    for (const FullLevel::Member& member : levels.full.members())
-      if (!levels.asleep(member.owner)) awake.push_back(member.owner);
+  for (const FullLevel::Member& member : levels.full.members())
+    if (!levels.asleep(member.owner)) awake.push_back(member.owner);
   const Vec3 down = down_of(levels);
   watch_who_bears(levels, slept, awake, [&](std::uint32_t, const Vec3& place, const Vec3& sleeper) {
     return !lies_under(sleeper, place, down);
   });
-  fresh_.insert(fresh_.end(), slept.begin(), slept.end());
-  if (fresh_.empty() || levels.now % kStepsALook != 0) return;
+}
+
+// Likewise a statistical one.
+void LeftPlaces::watch_statistical_who_bear(const Levels& levels) {
+  if (fresh_.empty() || (levels.now - 1) % kStepsALook != 0) return;
+  const Vec3 down = down_of(levels);
   if (levels.statistical && !down.isZero(0.0)) {
-    awake.clear();
+    std::vector<std::uint32_t> awake;
     levels.statistical->find_awake(awake);
     watch_who_bears(levels, fresh_, awake, [&](std::uint32_t body, const Vec3& place, const Vec3& above) {
       return lies_under(place, above, down) && may_creep(levels, body);
@@ -178,6 +181,7 @@ bool LeftPlaces::is_over(const Levels& levels, const Borne& borne) {
 }
 
 void LeftPlaces::wake(Levels& levels) {
+  watch_statistical_who_bear(levels);  // here, since the end of a step is not measured for its budget
   std::erase_if(borne_, [&](const Borne& borne) { return is_over(levels, borne); });
   for (const auto& [place, radius] : left_) levels.wake_at(place, radius);
   left_.clear();
@@ -203,7 +207,8 @@ void LeftPlaces::follow(const Levels& levels, std::span<const BodyId> slept,
   });
   for (const auto bodies : {slept, moved_and_slept})
     for (const BodyId body : bodies) note_place(levels, body);
-  watch_who_bears(levels, slept);
+  watch_full_who_bear(levels, slept);
+  fresh_.insert(fresh_.end(), slept.begin(), slept.end());
 }
 
 }  // namespace lodestone

@@ -54,7 +54,8 @@ class LeftPlaces {
              std::uint32_t callers);
   bool is_over(const Levels& levels, const Borne& borne);
   using MayBear = std::function<bool(std::uint32_t body, const Vec3& place, const Vec3& sleeper)>;
-  void watch_who_bears(const Levels& levels, std::span<const BodyId> slept);
+  void watch_full_who_bear(const Levels& levels, std::span<const BodyId> slept);
+  void watch_statistical_who_bear(const Levels& levels);
   void watch_who_bears(const Levels& levels, std::span<const BodyId> sleepers,
                        std::span<const std::uint32_t> awake, const MayBear& may_bear);
 

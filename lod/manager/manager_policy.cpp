@@ -165,7 +165,7 @@ std::string_view text_of(Rule rule) {
     case Rule::carries_full:
       return "it carries or pushes full bodies";
     case Rule::paused:
-      return "it waits, as the budget has just sent bodies down";
+      return "it waits, as the budget has just sent back down who had gone up";
   }
   return "";
 }

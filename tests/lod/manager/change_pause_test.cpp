@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
 #include <vector>
 
 #include "reference/random.h"
@@ -50,14 +51,14 @@ TEST(ChangePause, BeginsAnewWhileItLastsAndEndsWhereTheViewpointsGoElsewhere) {
 }
 
 // Whoever went up in such a heap moved its neighbours, which cost more than there was room for, and so on for
-// ever: 880 changes of rung in ten seconds of these three heaps, now 244.
+// ever: 1,452 changes of rung in ten seconds of these four heaps, now 284.
 TEST(ChangePause, AHeapUnderABudgetComesToRest) {
   const std::vector<std::shared_ptr<const Shape>> shapes{
       box_shape({0.2, 0.3, 0.4}), box_shape({0.3, 0.3, 0.3}), sphere_shape(0.15), box_shape({0.4, 0.4, 0.05}),
       std::make_shared<const Shape>(make_shape("l", make_l(0.3, 0.3, 0.1, 0.1)))};
   std::size_t changes = 0;
-  for (const std::uint64_t seed : {1u, 2u, 3u}) {
-    Manager manager = on_floor({.policy = {.policy = WorkPolicy{6'000.0}}, .signatures = coarse_signature});
+  for (const auto& [budget, seed] : {std::pair{3e3, 1u}, {3e3, 2u}, {4e3, 1u}, {4e3, 2u}}) {
+    Manager manager = on_floor({.policy = {.policy = WorkPolicy{budget}}, .signatures = coarse_signature});
     RandomStream random(11, seed, 0);
     for (int i = 0; i < 400; ++i)
       manager.add_body(
@@ -70,7 +71,7 @@ TEST(ChangePause, AHeapUnderABudgetComesToRest) {
       if (step >= 900) changes += manager.rung_changes().size();
     }
   }
-  EXPECT_LT(changes, 450u);
+  EXPECT_LT(changes, 800u);
 }
 
 }  // namespace

@@ -466,21 +466,29 @@ TEST(BudgetPolicy, OverItTheFarthestGoDownAtOnceWhateverDwellAndCap) {
   EXPECT_EQ(candidates.back().rung, Rung::tables);
 }
 
-TEST(BudgetPolicy, WhileItPausesNothingChangesButWhatMust) {
+TEST(BudgetPolicy, WhileItPausesNoneGoesUpButWhoMust) {
   const std::vector<LevelCandidate> candidates(30, at(1));
   const auto paused = choose_levels(candidates, kAtOrigin, by_budget(22.0), {.pauses = true});
   EXPECT_TRUE(paused.promote.empty());
   EXPECT_EQ(paused.reasons.front(), Rule::paused);
-  EXPECT_EQ(paused.sent_down, 0);
   std::vector<LevelCandidate> full;
   for (int i = 0; i < 50; ++i) full.push_back(on_ladder(1 + i, Rung::full));
-  const auto down = choose_levels(full, kAtOrigin, by_budget(14.0), {.pauses = true});
-  EXPECT_GT(down.sent_down, 0);
-  EXPECT_EQ(down.demote.size(), std::size_t(down.sent_down));
+  EXPECT_EQ(choose_levels(full, kAtOrigin, by_budget(14.0), {.pauses = true}).demote,
+            choose_levels(full, kAtOrigin, by_budget(14.0), {}).demote);
   std::vector<LevelCandidate> newcomers = candidates;
   for (LevelCandidate& c : newcomers) c.newcomer = true;
   EXPECT_EQ(choose_levels(newcomers, kAtOrigin, by_budget(22.0), {.pauses = true}).promote.size(),
             choose_levels(newcomers, kAtOrigin, by_budget(22.0), {}).promote.size());
+}
+
+TEST(BudgetPolicy, SentBackIsWhoHadJustChanged) {
+  std::vector<LevelCandidate> full;
+  for (int i = 0; i < 50; ++i) full.push_back(on_ladder(1 + i, Rung::full));
+  EXPECT_EQ(choose_levels(full, kAtOrigin, by_budget(14.0), {}).sent_back, 0);
+  for (LevelCandidate& c : full) c.dwell_left = 10;
+  const auto decision = choose_levels(full, kAtOrigin, by_budget(14.0), {});
+  EXPECT_GT(decision.sent_back, 0);
+  EXPECT_EQ(decision.demote.size(), std::size_t(decision.sent_back));
 }
 
 TEST(BudgetPolicy, NothingIsLeftWhereOthersUseItUp) {

@@ -117,6 +117,22 @@ TEST(CostModel, ASleeperIsChargedForItsWaking) {
   EXPECT_EQ(model.cost_of(Activity::asleep)[kTables], 0.0f);
 }
 
+// Else a pile that had slept for long woke at the price of its sleep, and many too many of it were full.
+TEST(CostModel, SleepersTellNothingOfThoseAwake) {
+  CostModel model;
+  model.set_unit(CostModel::Unit::milliseconds);
+  StepCounts asleep;
+  asleep.at(Rung::full, Activity::asleep) = 100, asleep.at(Rung::full, Activity::crowded) = 0.1;
+  StepMeasurement measured = measure(asleep, 1.0);
+  measured.rungs_ms[kFull] -= 0.95e-3 * 100 * work_of(Rung::full, std::size_t(Activity::asleep));
+  const double crowded = model.ms_of_one(Rung::full, std::size_t(Activity::crowded));
+  for (int i = 0; i < 600; ++i) model.learn(0.1, predict(model, asleep), asleep, measured);
+  EXPECT_LT(model.ms_of_one(Rung::full, std::size_t(Activity::asleep)), 0.2e-3);
+  EXPECT_GT(model.ms_of_one(Rung::full, std::size_t(Activity::crowded)), 0.7 * crowded);
+  EXPECT_EQ(model.ms_of_one(Rung::full, std::size_t(Activity::alone)),
+            1e-3 * work_of(Rung::full, std::size_t(Activity::alone)));
+}
+
 TEST(CostModel, AtMostOneStepInAHundredExceedsPredictionAndMargin) {
   CostModel model;
   model.set_unit(CostModel::Unit::milliseconds);
