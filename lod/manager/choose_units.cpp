@@ -43,7 +43,8 @@ void join_groups(const Groups& groups, std::span<const std::uint32_t> bodies, Un
       units.join(first.try_emplace(group.index, std::int32_t(i)).first->second, std::int32_t(i), INT32_MAX);
 }
 
-/// Of bodies that touch something: whose bounding spheres meet.
+/// Of bodies that touch something: whose bounding spheres meet. First those on one rung, so that of a heap of
+/// more than a group holds the same are together in the next step.
 void join_touching(std::span<const LevelCandidate> candidates, std::span<const Activity> activities,
                    Units& units) {
   double reach = 0.0;
@@ -53,14 +54,19 @@ void join_touching(std::span<const LevelCandidate> candidates, std::span<const A
       crowd.push_back(std::int32_t(i)), reach = std::max(reach, candidates[i].radius);
   const auto at = [&](std::int32_t i) -> const LevelCandidate& { return candidates[std::size_t(i)]; };
   std::ranges::sort(crowd, {}, [&](std::int32_t i) { return std::pair(at(i).position.x(), i); });
+  std::vector<std::pair<std::int32_t, std::int32_t>> across;  // rungs
   for (std::size_t a = 0; a < crowd.size(); ++a)
     for (std::size_t b = a + 1; b < crowd.size() && at(crowd[b]).position.x() - at(crowd[a]).position.x() <=
                                                         at(crowd[a]).radius + reach;
          ++b) {
       const double touch = at(crowd[a]).radius + at(crowd[b]).radius;
-      if ((at(crowd[b]).position - at(crowd[a]).position).squaredNorm() <= touch * touch)
+      if ((at(crowd[b]).position - at(crowd[a]).position).squaredNorm() > touch * touch) continue;
+      if (at(crowd[a]).rung == at(crowd[b]).rung)
         units.join(crowd[a], crowd[b], kMostInContact);
+      else
+        across.emplace_back(crowd[a], crowd[b]);
     }
+  for (const auto& [a, b] : across) units.join(a, b, kMostInContact);
 }
 
 void add(const LevelCandidate& member, const Views& views, Measure measure, LevelCandidate& unit) {
