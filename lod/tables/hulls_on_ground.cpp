@@ -50,7 +50,8 @@ void HullsOnGround::choose(std::int64_t begin, std::int64_t end) {
         stands_when_alone(std::int64_t(i))) {
       state = std::uint8_t(GroundState::stands);
     } else {
-      spheres_.on_hull[i] = HullStand::none;
+      if (!is_at_edge(std::int64_t(i)) || step_.touches(std::int64_t(i)))
+        spheres_.on_hull[i] = HullStand::none;
       if (state == kWithin) state = kFree;
     }
   }

@@ -19,8 +19,8 @@ class HullsOnGround {
   HullsOnGround(const SphereScene& scene, const NearGround& ground, SphereClips& clips)
       : scene_(scene), near_ground_(ground), clips_(clips) {}
 
-  /// Of spheres at places [begin, end): those that touched no other for a while stand on their hulls; the
-  /// others are spheres.
+  /// Of spheres at places [begin, end): those that touched no other for a while stand on their hulls, as
+  /// guests do at edges; the others are spheres.
   void choose(std::int64_t begin, std::int64_t end);
   /// It has come to rest, does not sleep, and its ground is what it was.
   bool lies_at_clips_end(std::int64_t place) const;
