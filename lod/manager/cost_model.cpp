@@ -160,7 +160,7 @@ void CostModel::learn_rung(std::size_t rung, const Charges& charges, double meas
   }
   if (expected_ms < 1e-3) return;  // a microsecond says nothing
   const double last = std::exchange(last_error_[rung], measured_ms / expected_ms - 1.0),
-               mean = 1e3 * (expected_ms - share[kAsleep]) / awake_work;
+               mean = awake_work > 0.0 ? 1e3 * (expected_ms - share[kAsleep]) / awake_work : 1.0;
   const double error = std::min(last_error_[rung], std::max(kErrorFirst, last));
   for (std::size_t charge = 0; charge < kCharges; ++charge) {
     double& factor = factors_[rung][charge];
